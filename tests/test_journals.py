@@ -272,7 +272,7 @@ def test_a_reading_at_an_angle_and_exudyn_have_every_journal():
         assert found.cylinder is None
         sample = result.data.main_journal_force_x.values[60, number - 1]
         assert found.value == pytest.approx(sample, abs=1e-6)
-    text = reading_report(at_angle(result, "60 deg"), VEE.period)
+    text = reading_report(at_angle(result, "60 deg"))
     assert "main journal force x 2" in text
     bodies = confirm(result)
     (journals,) = [row for row in bodies.period if row.quantity == "main journal"]

@@ -1,6 +1,7 @@
 """What a result and a scene show of themselves, and what can be asked of a result by a method."""
 
 import dataclasses
+import math
 import subprocess
 import sys
 from html.parser import HTMLParser
@@ -11,8 +12,12 @@ from matplotlib.figure import Figure
 
 import crankmbs
 from crankmbs import InputError, Motion, Run, load_scene, simulate
-from crankmbs.digits import digits
+from crankmbs.digits import digits, error_digits
+from crankmbs.display import displayed
 from crankmbs.measures import measure
+from crankmbs.scene.units import RPM
+from crankmbs.sweep.columns import columns_of
+from crankmbs.sweep.reading import reading_of
 
 FIRED = load_scene("propeller")
 SHORT = dataclasses.replace(FIRED, run=Run(until="2 cycles"))
@@ -85,8 +90,55 @@ def test_a_result_shows_its_measures_with_errors_and_a_figure(short):
 
 def test_the_text_of_a_scene_is_never_markup():
     scene = dataclasses.replace(SHORT, title=HOSTILE, source=HOSTILE)
-    for thing in (scene, simulate(scene)):
+    result = simulate(scene)
+    for thing in (scene, result):
         assert HOSTILE in shown(thing)  # as text, once parsed
+    assert HOSTILE in shown(result.measures(), pictures=0)
+    assert HOSTILE in shown(result.at("60 deg"), pictures=0)
+
+
+def test_measures_and_readings_show_themselves_in_the_units_of_people(short):
+    measures, state = short.measures(), short.at("60 deg")
+    text = shown(measures, pictures=0)
+    for words in ("mean speed [rpm]", "indicated power [kW]", "gauge pressure [bar]", "crank pin"):
+        assert words in text
+    driven = simulate(load_scene("torque_driven")).measures()
+    assert "not periodic: the speed changes by +131 rpm" in shown(driven, pictures=0)
+    assert error_digits(measures.mean_speed.error * 30.0 / np.pi) in text
+    text = shown(state, pictures=0)
+    for words in ("at 60 deg of the last cycle", "crank speed [rpm]", "rod angle [deg]", "F_oj"):
+        assert words in text
+
+
+def test_their_dataframes_have_errors_beside_values(short):
+    measures, state = short.measures(), short.at("60 deg")
+    table = measures.to_dataframe()
+    speed = table.loc["mean speed [rpm]"]
+    assert speed["value"] == measures.mean_speed.value / RPM
+    assert speed["error"] == measures.mean_speed.error / RPM
+    (pin,) = (force for force in measures.joints if force.joint == "crank pin")
+    largest = table.loc["largest crank pin force [N]"]
+    assert largest["value"] == pin.peak.value
+    assert largest["cycle angle [deg]"] == pytest.approx(math.degrees(pin.cycle_angle))
+    columns = columns_of(SHORT, series=False)
+    assert len({reading_of(name, columns).column for name in table.index}) == len(table)
+    table = state.to_dataframe()
+    assert len(table) == len(state.readings)
+    for reading in state.readings:
+        scale, unit = displayed(reading.units)
+        row = table.loc[f"{reading.quantity.replace('_', ' ')} [{unit}]"]
+        assert (row["value"], row["error"]) == (reading.value / scale, reading.error / scale)
+        assert row["symbol"] == reading.symbol
+
+
+def test_a_dataframe_of_many_cylinders_has_a_line_for_each():
+    result = simulate(load_scene("yi_diesel_free").with_(run__until="1 cycles"))
+    measures, state = result.measures().to_dataframe(), result.at("60 deg").to_dataframe()
+    forces = result.data["side_force"].sel(time=result.at("60 deg").time, method="nearest").values
+    for k in range(1, 5):
+        assert f"largest crank pin force {k} [N]" in measures.index
+        at = state.loc[f"side force {k} [N]", "value"]
+        assert at == pytest.approx(forces[k - 1], rel=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@ those of two."""
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -50,15 +51,21 @@ def measure(machine: Machine, pairs: Pairs) -> tuple[Numbers, Numbers]:
     answer, peaks = _numbers(machine, one, pairs.cases, None)
     check, _ = _numbers(machine, other, pairs.cases, peaks)
     rounded = {"speed_gain": answer["fast"], "fluctuation": answer["fast"] / answer["mean_speed"]}
+    rounded |= dict.fromkeys(("torque_max", "torque_min"), answer.pop("level"))
     errors = {
         name: np.abs(value - check[name]) + ROUNDING * np.abs(rounded.get(name, value))
         for name, value in answer.items()
     }
     missed = peaks["vectors"].missed
-    errors["fast"] += missed[:, -2]
-    errors["slow"] += missed[:, -1]
+    for name, column in zip(
+        ("torque_max", "torque_min", "fast", "slow"), missed.T[-4:], strict=True
+    ):
+        errors[name] += column
     errors["fluctuation"] += missed[:, -2:].sum(axis=1) / np.abs(answer["mean_speed"])
-    errors["peaks"] += missed[:, :-2]
+    errors["peaks"] += missed[:, :-4]
+    for numbers, sense in ((answer, machine.sense), (errors, 1.0)):
+        extremes = [sense * numbers[name] for name in ("fast", "slow")]
+        numbers["highest_speed"], numbers["lowest_speed"] = extremes[:: int(machine.sense)]
     errors["lectures"] += peaks["lectures"].missed
     apart = np.abs(one.courses.ends - other.courses.ends).max(axis=1)
     answer["closure"] = apart / answer["greatest"] + ROUNDING
@@ -68,7 +75,7 @@ def measure(machine: Machine, pairs: Pairs) -> tuple[Numbers, Numbers]:
     answer["relative"] = np.vstack(parts).max(axis=0)
     of, (begin, width) = peaks["vectors"], _places(one)
     case = np.minimum(np.arange(len(of.cell)), len(width) - 1)[:, None]
-    answer["angles"] = (begin[case, of.cell] + of.place * width[case, of.cell])[:, :-2]
+    answer["angles"] = (begin[case, of.cell] + of.place * width[case, of.cell])[:, :-4]
     return answer, errors
 
 
@@ -99,7 +106,8 @@ def _numbers(
     -------
     duration [s] of a period; greatest energy, and that where the period begins [J]; growth of a
     disturbance, less 1; highest and lowest speed [rad/s], without sense; of every joint's force the
-    peak and the mean over time, shape (k, joints) [N]; the largest size of every quantity of the
+    peak and the mean over time, shape (k, joints) [N]; the level that the torque's extremes are
+    measured from [N m]; the largest size of every quantity of the
     lectures and of what it is more than each of them says, shape (k, curves); and what
     `crankmbs.measures.Measures` has by these names
     """
@@ -107,8 +115,11 @@ def _numbers(
     width, turned = _places(solved)[1][..., None], float(machine.answer.width.sum())
     share, rods = width * tables.rule.weights, _combined(tables.rods, of, cuts)
     slow, load = of.slow, of.load
-    fastest = np.abs(of.omega).max(axis=(1, 2))
-    vectors = _vectors(tables, of, 2.0 * fastest, cuts)
+    fastest, strongest = (np.abs(each).max(axis=(1, 2)) for each in (of.omega, rods))
+    forces = _combined(tables.forces, of, cuts)
+    top = 2.0 * strongest
+    extremes = _extremes((rods, top, top), (np.abs(of.omega), 0.0, 2.0 * fastest))
+    vectors = np.concatenate([forces, extremes], axis=1)
     if cuts is not None:
         slow, load, rods, vectors = (_cut(each, cuts) for each in (slow, load, rods, vectors))
     time = (share * slow).sum(axis=(1, 2))
@@ -125,7 +136,8 @@ def _numbers(
         largest, lectures = (sizes_at(each, known[name]) for name, each in curves.items())
     fast, slowest = largest[:, -2], 2.0 * fastest - largest[:, -1]
     polynomials = at_nodes(sizes.shape[-1])
-    means = impulses(polynomials, vectors[:, :-2], sizes[:, :-2], width * slow) / time[:, None]
+    means = impulses(polynomials, vectors[:, :-4], sizes[:, :-4], width * slow) / time[:, None]
+    strokes = [gear.stroke for gear in machine.scene.running_gear]
     numbers = {
         "duration": machine.shares * time,
         "greatest": courses.energy.max(axis=(1, 2)),
@@ -133,15 +145,20 @@ def _numbers(
         "growth": courses.growth,
         "fast": fast,
         "slow": slowest,
-        "peaks": largest[:, :-2],
+        "peaks": largest[:, :-4],
         "means": means,
         "lectures": lectures,
+        "level": top,
+        "torque_max": largest[:, -4] - top,
+        "torque_min": top - largest[:, -3],
         "mean_speed": mean,
+        "piston_speed": np.outer(np.abs(mean), strokes) / math.pi,
         "fluctuation": (fast - slowest) / np.abs(mean),
         "speed_gain": _gained(solved, machine.sense, cases.mass),
         "crank_torque": (share * rods).sum(axis=(1, 2)) / turned,
         "external_torque": (share * load).sum(axis=(1, 2)) / turned,
     }
+    numbers["brake_power"] = -numbers["external_torque"] * mean
     return numbers | _powers(machine, tables, numbers["duration"]), peaks
 
 
@@ -214,13 +231,18 @@ def _combined(table: Array, of: _Motions, cuts: Cuts | None) -> Array:
     return values
 
 
-def _vectors(tables: Pass, of: _Motions, level: Array, cuts: Cuts | None) -> Array:
-    """The forces of the joints at the nodes, the speed, and what it is less than a level of shape
-    (k,): shape (k, joints + 2, 2, m, s)."""
-    speeds = np.zeros((len(level), 2, 2, *of.omega.shape[1:]))
-    speeds[:, 0, 0] = np.abs(of.omega)
-    speeds[:, 1, 0] = level[:, None, None] - speeds[:, 0, 0]
-    return np.concatenate([_combined(tables.forces, of, cuts), speeds], axis=1)
+def _extremes(*quantities: tuple[Array, Array | float, Array]) -> Array:
+    """Vectors along a line whose sizes are largest where quantities are largest, then least, shape
+    (k, 2 for each, 2, m, s).
+
+    quantities : values, shape (k, m, s), what is added to them, and what they are taken from, shape
+        (k,), so that neither is negative
+    """
+    rows = []
+    for values, added, level in quantities:
+        rows += [values + np.reshape(added, (-1, 1, 1)), level[:, None, None] - values]
+    sizes = np.stack(rows, axis=1)[:, :, None]
+    return np.concatenate([sizes, np.zeros_like(sizes)], axis=2)
 
 
 def _cut(values: Array, cuts: Cuts) -> Array:

@@ -11,27 +11,17 @@ from numpy.typing import NDArray
 from crankmbs.batch.measures import by_turns
 from crankmbs.batch.solve import Group, solved_together
 from crankmbs.compare import LECTURES, QUANTITIES
+from crankmbs.measures.estimate import ROUNDING
+from crankmbs.measures.names import names_of
 from crankmbs.mechanics.peaks import negligible
+from crankmbs.mechanics.pressure import PeriodicPressure, pressures_of
+from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.ending import Ending
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
 __all__ = ["Rows", "rows_of"]
 
-_MEASURES = (
-    "mean_speed",
-    "fluctuation",
-    "speed_gain",
-    "crank_torque",
-    "external_torque",
-    "indicated_power",
-    "imep",
-    "imep_crank_end",
-    "indicated_power_head_end",
-    "indicated_power_crank_end",
-    "friction_power",
-    "mechanical_efficiency",
-)
 _JOINTS = ("crank_pin", "piston_pin", "side_force")
 
 
@@ -61,7 +51,8 @@ def rows_of(scenes: Sequence[Scene | None]) -> list[Rows]:
 def _rows(group: Group) -> Rows:
     of, error = group.numbers, group.errors
     columns = {"relative_error": of["relative"], "energy_closure": of["closure"]}
-    pairs = {name: (of[name], error[name]) for name in _MEASURES if name in of}
+    pairs = {name: (of[name], error[name]) for name in names_of(group.machine.scene) if name in of}
+    pairs |= _of_pressures(group)
     columns |= _of_joints(group, pairs)
     columns |= {name: value for name, (value, _) in pairs.items()}
     columns |= {f"{name}_error": error for name, (_, error) in pairs.items()}
@@ -101,6 +92,25 @@ def _of_joints(group: Group, pairs: dict[str, tuple[Array, Array]]) -> dict[str,
         mean, unsure = (by_turns(each["means"][:, every], machine.shares) for each in (of, error))
         pairs[f"{joint}_mean"] = mean, unsure
     return angles
+
+
+def _of_pressures(group: Group) -> dict[str, tuple[Array, Array]]:
+    """The largest pressures of every cylinder, which are alike in all motions."""
+    scene = group.machine.scene
+    train = crank_train(scene)
+    ends = {} if train.pressure is None else {"gauge_pressure": train.pressure}
+    if train.crank_end is not None:
+        ends = {"gauge_pressure_head_end": pressures_of(scene) or ()}
+        ends["gauge_pressure_crank_end"] = train.crank_end
+    return {name: _highest(pressures, len(group.which)) for name, pressures in ends.items()}
+
+
+def _highest(pressures: Sequence[PeriodicPressure], count: int) -> tuple[Array, Array]:
+    """The peak of each pressure and its error, in so many cases."""
+    peaks = {each: (each.peak[1], each.perturbed.peak[1]) for each in dict.fromkeys(pressures)}
+    value, perturbed = np.array([peaks[each] for each in pressures]).T
+    error = np.abs(perturbed - value) + ROUNDING * np.abs(value)
+    return np.tile(value, (count, 1)), np.tile(error, (count, 1))
 
 
 def _of_lectures(group: Group) -> dict[str, Array]:

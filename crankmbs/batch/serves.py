@@ -38,7 +38,7 @@ def loads_of(scene: Scene) -> Loads | None:
         return None
     if scene.fuel is not None or (scene.friction is not None and scene.friction.viscous > 0.0):
         return None
-    if scene.throws is not None or scene.force or scene.unlike:
+    if scene.bearings is not None or scene.force or scene.unlike:
         return None
     if scene.run.formulation not in ("auto", "crank_angle"):
         return None

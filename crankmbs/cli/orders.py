@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from crankmbs.cli.text import table
-from crankmbs.compare import AtAngle, Reading
+from crankmbs.compare import AtAngle
 from crankmbs.digits import digits, error_digits
-from crankmbs.display import displayed
 from crankmbs.measures import EngineOrder, EngineOrders
+from crankmbs.report.readings import passed_at, reading_tables
 from crankmbs.scene.units import RPM
 
 __all__ = ["orders_report", "reading_report", "save_orders"]
@@ -58,27 +58,10 @@ def save_orders(orders: EngineOrders, folder: Path) -> Path:
     return file
 
 
-def reading_report(state: AtAngle, period: float) -> str:
-    """Every quantity at one crank angle: a table of the engine, one with a column a cylinder."""
-    degrees = round(math.degrees(state.crank_angle), 9)
-    within = degrees % round(math.degrees(period))
-    rows: dict[tuple[bool, str, str], list[Reading]] = {}
-    for reading in state.readings:
-        key = reading.cylinder is not None, f"{reading.quantity.replace('_', ' ')}", reading.symbol
-        rows.setdefault(key, []).append(reading)
-    engine = [_reading(*key[1:], row) for key, row in rows.items() if not key[0]]
-    cylinders = [_reading(*key[1:], row) for key, row in rows.items() if key[0]]
-    place = f"at {within:.9g} deg of the last cycle"
-    columns = [f"cylinder {k}" for k in range(1, len(cylinders[0]) - 2)]
-    return "\n".join(
-        [
-            "",
-            table([place, "symbol", "value", "num. error"], engine),
-            "",
-            table([place, "symbol", *columns, "num. error"], cylinders),
-            f"passed at {digits(state.time, most=10)} s, at a crank angle of {degrees:.9g} deg",
-        ]
-    )
+def reading_report(state: AtAngle) -> str:
+    """Every quantity at one crank angle."""
+    tables = [f"\n{table(*each)}" for each in reading_tables(state)]
+    return "\n".join([*tables, passed_at(state)])
 
 
 def _lines(row: EngineOrder) -> list[list[str]]:
@@ -104,9 +87,3 @@ def _degrees(phase: float, size: float, error: float) -> str:
     """A phase in degrees, to the digits that an error of this size in the wave leaves."""
     off = math.degrees(error / size) if size > 0.0 else math.inf
     return digits(math.degrees(phase), off) if off < 90.0 else "-"
-
-
-def _reading(name: str, symbol: str, row: list[Reading]) -> list[str]:
-    scale, units = displayed(row[0].units)
-    values = [digits(reading.value / scale, reading.error / scale, most=9) for reading in row]
-    return [f"{name} [{units}]", symbol, *values, error_digits(row[0].error / scale)]

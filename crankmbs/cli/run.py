@@ -107,8 +107,7 @@ def _further(outcome: _Outcome, angles: list[float], *, confirm: bool, orders: b
         from crankmbs.cli.orders import reading_report
         from crankmbs.compare import at_angle
 
-        period = result.scene.period
-        parts += [reading_report(at_angle(result, angle), period) for angle in angles]
+        parts += [reading_report(at_angle(result, angle)) for angle in angles]
     return parts
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +19,7 @@ from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import quantity
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
 
 __all__ = ["AtAngle", "Reading", "angle_of", "at_angle"]
@@ -41,14 +42,36 @@ class Reading:
     value: float
     error: float
 
+    @property
+    def words(self) -> str:
+        """The quantity in plain words."""
+        return self.quantity.replace("_", " ")
+
 
 @dataclass(frozen=True)
 class AtAngle:
     """A run at one crank angle [rad], unwrapped, and the time [s] at which the crank passes it."""
 
+    scene: Scene = field(repr=False)
     crank_angle: float
     time: float
     readings: tuple[Reading, ...]
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """The readings as a pandas table in the units of its index: rpm, bar, mm, deg, N, N m.
+
+        >>> state = simulate(load_scene("yi_diesel")).at("60 deg")
+        >>> state.to_dataframe().loc["crank speed [rpm]", "value"].round(6).item()
+        3200.0
+        """
+        from crankmbs.report.readings import readings_frame
+
+        return readings_frame(self)
+
+    def _repr_html_(self) -> str:
+        from crankmbs.report.html import at_html
+
+        return at_html(self)
 
 
 def at_angle(result: Result, angle: float | str) -> AtAngle:
@@ -81,7 +104,8 @@ def at_angle(result: Result, angle: float | str) -> AtAngle:
     passes = passes_over(result, window)
     data = read_at(result, passes, np.array([crank_angle]), in_time=False)
     time = float(data["time"].values[0])
-    return AtAngle(crank_angle, time, (*_variables(data), *_lecture_forces(result.scene, data)))
+    readings = *_variables(data), *_lecture_forces(result.scene, data)
+    return AtAngle(result.scene, crank_angle, time, readings)
 
 
 def angle_of(text: float | str) -> float:

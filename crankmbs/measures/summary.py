@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,9 @@ from crankmbs.motion.states import samples_in
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 __all__ = [
     "Measures",
@@ -59,11 +62,13 @@ class Measures:
         friction or gas
     force_power [W] : what the forces from outside on all pistons give per time, negative where they
         take; None without
-    peaks : of torque and pressures, as `crankmbs.measures.peaks.quantities_of` lists them
+    peaks : of torque and pressures, as `crankmbs.measures.peaks.quantities_of` lists them, then
+        highest and lowest speed
     energy_closure : max |energy residual| / peak kinetic energy over the whole run
     """
 
     window: Span
+    scene: Scene = field(repr=False)
     mean_speed: Estimate
     fluctuation: Estimate
     speed_gain: Estimate
@@ -91,12 +96,41 @@ class Measures:
         return self.window.kind != TURNS_BACK and drift <= most
 
     @property
+    def piston_speed(self) -> tuple[Estimate, ...]:
+        """Mean piston speed of each cylinder [m/s]: twice its stroke a revolution."""
+        speed, error = self.mean_speed
+        per_radian = [gear.stroke / math.pi for gear in self.scene.running_gear]
+        return tuple(Estimate(abs(speed) * stroke, error * stroke) for stroke in per_radian)
+
+    @property
     def power(self) -> Estimate:
         """Of drive and loads together [W], negative where these take more: mean torque from outside
         times mean speed."""
         (torque, of_torque), (speed, of_speed) = self.external_torque, self.mean_speed
         error = abs(torque) * of_speed + abs(speed) * of_torque
         return Estimate(torque * speed, error)
+
+    @property
+    def brake_power(self) -> Estimate:
+        """What the loads take less what drives give [W]."""
+        return Estimate(-self.power.value, self.power.error)
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """The measures as a pandas table in the units of its index, rpm, kW, bar, N, N m: value and
+        error, and of peaks where they are [deg]. A sweep takes the measures by these names.
+
+        >>> table = simulate(load_scene("yi_diesel")).measures().to_dataframe()
+        >>> table.loc["mean speed [rpm]", "value"].round(6).item()
+        3200.0
+        """
+        from crankmbs.report.readings import measures_frame
+
+        return measures_frame(self)
+
+    def _repr_html_(self) -> str:
+        from crankmbs.report.html import measures_html
+
+        return measures_html(self)
 
 
 def measure(result: Result) -> Measures:
@@ -114,9 +148,8 @@ def measure(result: Result) -> Measures:
     passes = passes_over(result, window)
     numbers = estimates(passes, partial(_numbers, scene, window))
     joints, quantities = joints_of(scene), quantities_of(scene)
-    speeds = len(quantities)
-    places = {name: numbers.pop(name)[:speeds] for name in ("peaks", "times", "angles")}
-    peaks, means = peaks_from(places, quantities, scene), numbers.pop("means")
+    places = {name: numbers.pop(name) for name in ("peaks", "times", "angles")}
+    peaks, means = peaks_from(places, (*quantities, *SPEEDS), scene), numbers.pop("means")
     forces = tuple(
         JointForce(
             joint=joint.joint,
@@ -134,7 +167,8 @@ def measure(result: Result) -> Measures:
         name: values if name.startswith("imep") else values[0] for name, values in numbers.items()
     }
     closure, others = _energy_closure(result), peaks[len(joints) :]
-    return Measures(window=window, joints=forces, peaks=others, energy_closure=closure, **named)
+    summed: dict[str, Any] = {"joints": forces, "peaks": others, "energy_closure": closure}
+    return Measures(window=window, scene=scene, **summed, **named)
 
 
 def mean_speed(result: Result, window: Span) -> Estimate:

@@ -9,18 +9,26 @@ from collections.abc import Sequence
 from markupsafe import Markup
 
 from crankmbs.choose import choose
-from crankmbs.compare import Budget, Comparison, Excerpt
+from crankmbs.compare import AtAngle, Budget, Comparison, Excerpt
 from crankmbs.errors import CrankmbsError
 from crankmbs.figures import last_view, machine_figure, png, speed_figure
-from crankmbs.measures import measure
+from crankmbs.measures import Measures, measure
 from crankmbs.measures.plausible import warnings
 from crankmbs.report.compared import advice, budget_table, comparison_table, left_out_lines
 from crankmbs.report.machine import machine_rows
-from crankmbs.report.rows import tables, unsteady
+from crankmbs.report.readings import passed_at, reading_tables
+from crankmbs.report.rows import measure_tables, not_periodic, tables, unsteady
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 
-__all__ = ["budget_html", "comparison_html", "result_html", "scene_html"]
+__all__ = [
+    "at_html",
+    "budget_html",
+    "comparison_html",
+    "measures_html",
+    "result_html",
+    "scene_html",
+]
 
 _LEFT, _RIGHT = (Markup(f' style="text-align: {side}"') for side in ("left", "right"))
 _DPI = 100  # enough on a screen, and a notebook that is saved stays small
@@ -43,12 +51,30 @@ def result_html(result: Result) -> str:
         *(("warning", text) for text in warnings(result.scene)),
     ]
     parts = [
-        _head(result.scene, f"status {result.status}"),
         _table([], about),
         *(_table(*rows) for rows in tables(result, measures)),
         _picture(png(speed_figure(last_view(result)), _DPI), "crank speed over the crank angle"),
     ]
-    return str(Markup("<div>{}</div>").format(Markup("\n").join(parts)))
+    return _whole(result.scene, f"status {result.status}", parts)
+
+
+def measures_html(measures: Measures) -> str:
+    """The measures over their window with their errors, and peaks with where they are.
+
+    >>> measures_html(simulate(load_scene("propeller")).measures()).count("<table>")
+    2
+    """
+    parts = [_table(*rows) for rows in measure_tables(measures)]
+    return _whole(measures.scene, not_periodic(measures) or "measures", parts)
+
+
+def at_html(state: AtAngle) -> str:
+    """Every quantity at one crank angle with its error.
+
+    >>> at_html(simulate(load_scene("propeller")).at("60 deg")).count("<table>")
+    2
+    """
+    return _whole(state.scene, passed_at(state), [_table(*rows) for rows in reading_tables(state)])
 
 
 def scene_html(scene: Scene) -> str:
@@ -68,8 +94,7 @@ def scene_html(scene: Scene) -> str:
         *(("warning", sentence) for sentence in warnings(scene)),
     ]
     picture = _picture(png(machine_figure(scene), _DPI), "the machine, to scale")
-    parts = [_head(scene, "scene"), _table([], rows), picture]
-    return str(Markup("<div>{}</div>").format(Markup("\n").join(parts)))
+    return _whole(scene, "scene", [_table([], rows), picture])
 
 
 def comparison_html(comparison: Comparison) -> str:
@@ -79,12 +104,9 @@ def comparison_html(comparison: Comparison) -> str:
     1
     """
     text = "largest difference from the run, in % of its peak; the angle is the last reference's"
-    parts = [
-        _head(comparison.excerpt.result.scene, f"{_stretch(comparison.excerpt)}: {text}"),
-        _table(*comparison_table(comparison)),
-        *(Markup("<p>{}</p>").format(line) for line in left_out_lines(comparison.left_out)),
-    ]
-    return str(Markup("<div>{}</div>").format(Markup("\n").join(parts)))
+    lines = [Markup("<p>{}</p>").format(line) for line in left_out_lines(comparison.left_out)]
+    parts = [_table(*comparison_table(comparison)), *lines]
+    return _whole(comparison.excerpt.result.scene, f"{_stretch(comparison.excerpt)}: {text}", parts)
 
 
 def budget_html(budget: Budget) -> str:
@@ -94,13 +116,13 @@ def budget_html(budget: Budget) -> str:
     1
     """
     text = "formula minus run, in % of its peak, where it is largest; the causes add up to it there"
-    parts = [_head(budget.excerpt.result.scene, f"{_stretch(budget.excerpt)}: {text}")]
+    parts: list[Markup] = []
     for reference in dict.fromkeys(split.reference for split in budget.ranked):
         splits = [split for split in budget.ranked if split.reference == reference]
         parts += [Markup("<p>{}</p>").format(reference), _table(*budget_table(splits))]
     lines = [*([advice(budget)] if budget.splits else []), *left_out_lines(budget.left_out)]
     parts += [Markup("<p>{}</p>").format(line) for line in lines]
-    return str(Markup("<div>{}</div>").format(Markup("\n").join(parts)))
+    return _whole(budget.excerpt.result.scene, f"{_stretch(budget.excerpt)}: {text}", parts)
 
 
 def _stretch(excerpt: Excerpt) -> str:
@@ -108,8 +130,11 @@ def _stretch(excerpt: Excerpt) -> str:
     return f"{excerpt.window.kind}, cylinder {excerpt.cylinder} of {count}"
 
 
-def _head(scene: Scene, kind: str) -> Markup:
-    return Markup("<p><b>{}</b>, {}</p>").format(scene.title or "a scene without a title", kind)
+def _whole(scene: Scene, kind: str, parts: Sequence[Markup]) -> str:
+    """All parts below the title of the scene and what they are of it."""
+    title = scene.title or "a scene without a title"
+    head = Markup("<p><b>{}</b>, {}</p>").format(title, kind)
+    return str(Markup("<div>{}</div>").format(Markup("\n").join([head, *parts])))
 
 
 def _table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Markup:

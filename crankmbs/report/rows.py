@@ -14,7 +14,8 @@ from typing import NamedTuple
 from crankmbs.digits import digits, error_digits
 from crankmbs.display import displayed
 from crankmbs.measures import Estimate, JointForce, Measures
-from crankmbs.measures.peaks import Peak, run_peaks, torque_of_rods
+from crankmbs.measures.names import Named, names_of, values_of
+from crankmbs.measures.peaks import Peak, run_peaks
 from crankmbs.measures.span import TURNS_BACK
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
@@ -23,7 +24,10 @@ __all__ = [
     "FORCE_HEADINGS",
     "Table",
     "degrees_within",
+    "labelled",
     "measure_rows",
+    "measure_tables",
+    "not_periodic",
     "peak_rows",
     "tables",
     "unsteady",
@@ -47,7 +51,7 @@ _WHOLE_RUN = [
     "cycle",
 ]
 _MPA = 1e6  # Pa in N/mm2
-_SAME = 1e-9  # of the stroke: no more than rounding
+_SAME = 1e-9  # of a piston speed: no more than rounding
 
 
 class Table(NamedTuple):
@@ -64,18 +68,28 @@ def tables(result: Result, measures: Measures) -> list[Table]:
     >>> [table.headings[0] for table in tables(result, result.measures())]
     ['over the last cycle', 'over the whole run, 0 to 1 s']
     """
-    window, scene, parts = measures.window.kind, result.scene, []
-    if window != TURNS_BACK:
-        rows = measure_rows(measures, scene)
-        parts.append(Table([f"over the {window}", "value, to 6 digits", _ERROR], rows))
-    if not measures.steady:
-        motion = result.passes.answer
-        name = f"over {_part(result)}, {motion.begin:.6g} to {motion.end:.6g} s"
-        return [*parts, Table([name, *_WHOLE_RUN], _of_run(run_peaks(result), scene))]
-    parts.append(Table([f"over the {window}", *FORCE_HEADINGS], peak_rows(measures, scene.period)))
-    specific = _specific(measures)
-    if specific:
-        name = f"specific load over the {window} [N/mm2]"
+    if measures.steady:
+        return measure_tables(measures)
+    parts = measure_tables(measures)[:1] if measures.window.kind != TURNS_BACK else []
+    motion = result.passes.answer
+    name = f"over {_part(result)}, {motion.begin:.6g} to {motion.end:.6g} s"
+    return [*parts, Table([name, *_WHOLE_RUN], _of_run(run_peaks(result), result.scene))]
+
+
+def measure_tables(measures: Measures) -> list[Table]:
+    """Measures, peaks and specific loads over the window, steady or not.
+
+    >>> tables = measure_tables(simulate(load_scene("torque_driven")).measures())
+    >>> [table.headings[0] for table in tables]
+    ['over the last cycle', 'over the last cycle']
+    """
+    window = f"over the {measures.window.kind}"
+    parts = [
+        Table([window, "value, to 6 digits", _ERROR], measure_rows(measures)),
+        Table([window, *FORCE_HEADINGS], peak_rows(measures)),
+    ]
+    if specific := _specific(measures):
+        name = f"specific load {window} [N/mm2]"
         parts.append(Table([name, "peak", _ERROR, "mean", _ERROR], specific))
     return parts
 
@@ -93,80 +107,72 @@ def unsteady(result: Result, measures: Measures) -> str:
     >>> unsteady(result, result.measures())
     ''
     """
+    why = not_periodic(measures)
+    return f"{why}; peaks are of {_part(result)}" if why else ""
+
+
+def not_periodic(measures: Measures) -> str:
+    """Why a window does not stand for the cycles after it; nothing where it does.
+
+    >>> not_periodic(simulate(load_scene("torque_driven")).measures())
+    'not periodic: the speed changes by +131 rpm over the last cycle'
+    """
     if measures.steady:
         return ""
-    peaks = f"peaks are of {_part(result)}"
     if measures.window.kind == TURNS_BACK:
-        return f"not periodic: the crank rests or turns back; {peaks}"
+        return "not periodic: the crank rests or turns back"
     scale, unit = displayed("rad/s")
     drift = measures.speed_gain.value / scale
-    return (
-        f"not periodic: the speed changes by {drift:+.3g} {unit} over the {measures.window.kind}; "
-        f"{peaks}"
-    )
+    return f"not periodic: the speed changes by {drift:+.3g} {unit} over the {measures.window.kind}"
 
 
-def measure_rows(measures: Measures, scene: Scene) -> list[list[str]]:
+def measure_rows(measures: Measures) -> list[list[str]]:
     """Name with unit, value, error, of each measure over the window but peaks; what means nothing
     where the speed is not periodic is left out.
 
-    >>> scene = load_scene("yi_diesel")
-    >>> measure_rows(simulate(scene).measures(), scene)[0][:2]
+    >>> measure_rows(simulate(load_scene("yi_diesel")).measures())[0][:2]
     ['mean speed [rpm]', '3200.00']
     """
-    rows = [
-        _row("mean speed", "rad/s", measures.mean_speed),
-        *_piston_speeds(measures.mean_speed, scene),
-    ]
-    if measures.steady:
-        rows.append(_row("coefficient of fluctuation, (max - min)/mean", "1", measures.fluctuation))
-    rows += [
-        _row(f"drift of the speed over the {measures.window.kind}", "rad/s", measures.speed_gain),
-        _row(f"mean {torque_of_rods(scene)}", "N m", measures.crank_torque),
-        _row("mean load torque (drive, where positive)", "N m", measures.external_torque),
-    ]
-    if measures.indicated_power is not None:
-        rows.append(_row("indicated power", "W", measures.indicated_power))
-    if measures.friction_power is not None:
-        rows.append(_row("mechanical losses, friction of pistons", "W", measures.friction_power))
-    if measures.force_power is not None:
-        rows.append(_row("power of the forces on the pistons", "W", measures.force_power))
-    for end in ("head_end", "crank_end"):
-        power = getattr(measures, f"indicated_power_{end}")
-        if power is not None:
-            rows.append(_row(f"indicated power, {end.replace('_', ' ')}", "W", power))
-    if scene.gas is not None or measures.friction_power or measures.force_power:
-        power = measures.power
-        brakes = power.value < 0.0
-        name = "brake power" if brakes else "drive power"
-        rows.append(_row(name, "W", Estimate(abs(power.value), power.error)))
-    if measures.mechanical_efficiency is not None and measures.steady:
-        rows.append(_row("mechanical efficiency", "1", measures.mechanical_efficiency))
-    double = measures.imep_crank_end is not None
+    names, rows = names_of(measures.scene), []
+    left_out = set() if measures.steady else {"fluctuation", "mechanical_efficiency"}
+    for name, estimates in values_of(measures).items():
+        if name == "main_bearing_peak":  # the first of the peaks
+            break
+        if name not in left_out:
+            rows += _rows(measures, name, names[name], estimates)
+    return rows
+
+
+def _rows(
+    measures: Measures, name: str, about: Named, estimates: tuple[Estimate, ...]
+) -> list[list[str]]:
+    """One measure: of cylinders that all have the same piston speed it stands once."""
+    words = about.words
+    if name == "speed_gain":
+        words += f" over the {measures.window.kind}"
+    if name == "brake_power":
+        ((power, error),) = estimates
+        words = "brake power" if power > 0.0 else "drive power"
+        estimates = (Estimate(abs(power), error),)
+    if name == "piston_speed":
+        low, high = min(estimates).value, max(estimates).value
+        estimates = estimates[:1] if high - low <= _SAME * high else estimates
+    many = len(estimates) > 1
     return [
-        *rows,
-        *_pressures(measures.imep or (), ", head end" if double else ""),
-        *_pressures(measures.imep_crank_end or (), ", crank end"),
+        _row(f"{words}, cylinder {number}" if many else words, about.units, estimate)
+        for number, estimate in enumerate(estimates, start=1)
     ]
 
 
-def _pressures(pressures: tuple[Estimate, ...], end: str) -> list[list[str]]:
-    """The mean effective pressures of the cylinders."""
-    name, many = "indicated mean effective pressure", len(pressures) > 1
-    return [
-        _row(f"{name}{end}{f', cylinder {number}' if many else ''}", "Pa", imep)
-        for number, imep in enumerate(pressures, start=1)
-    ]
-
-
-def peak_rows(measures: Measures, period: float) -> list[list[str]]:
-    """Name and the cells under `FORCE_HEADINGS` of each joint's force, then of torque and
-    pressures; period [rad] : the engine's."""
+def peak_rows(measures: Measures) -> list[list[str]]:
+    """Name and the cells under `FORCE_HEADINGS` of each joint's force, then of torque,
+    pressures and speed."""
+    period = measures.scene.period
     joints = Counter(joint.joint for joint in measures.joints)
     peaks = Counter(peak.name for peak in measures.peaks)
     rows = [
         [
-            _named(_words(joint), joint.number, joints[joint.joint], "N"),
+            labelled(_words(joint), joint.number, joints[joint.joint], "N"),
             *_cells("N", joint.peak),
             *_angles(joint.crank_angle, joint.cycle_angle, period),
             *_cells("N", joint.mean),
@@ -174,7 +180,7 @@ def peak_rows(measures: Measures, period: float) -> list[list[str]]:
         for joint in measures.joints
     ]
     for top in measures.peaks:
-        name = _named(top.name, top.number, peaks[top.name], top.units)
+        name = labelled(top.name, top.number, peaks[top.name], top.units)
         angles = _angles(top.crank_angle, top.cycle_angle, period)
         rows.append([name, *_cells(top.units, top.value), *angles, "", ""])
     return rows
@@ -192,7 +198,7 @@ def _of_run(peaks: tuple[Peak, ...], scene: Scene) -> list[list[str]]:
     assert start is not None
     return [
         [
-            _named(_words(top), top.number, counts[top.name], top.units),
+            labelled(_words(top), top.number, counts[top.name], top.units),
             *_cells(top.units, top.value),
             f"{top.time:.6g}",
             *_angles(top.crank_angle, top.cycle_angle, scene.period),
@@ -207,7 +213,7 @@ def _specific(measures: Measures) -> list[list[str]]:
     counts = Counter(joint.joint for joint in measures.joints)
     return [
         [
-            _named(joint.joint, joint.number, counts[joint.joint], "1"),
+            labelled(joint.joint, joint.number, counts[joint.joint], "1"),
             *(
                 cell
                 for estimate in (joint.specific_peak, joint.specific_mean)
@@ -220,32 +226,24 @@ def _specific(measures: Measures) -> list[list[str]]:
     ]
 
 
-def _piston_speeds(speed: Estimate, scene: Scene) -> list[list[str]]:
-    """Twice the stroke a revolution, of cylinders of unlike strokes each [m/s]."""
-    strokes = [gear.stroke for gear in scene.running_gear]
-    alike = max(strokes) - min(strokes) <= _SAME * max(strokes)
-    rows = []
-    for number, stroke in enumerate(strokes[:1] if alike else strokes, start=1):
-        per_radian = stroke / math.pi
-        mean = Estimate(abs(speed.value) * per_radian, speed.error * per_radian)
-        name = "mean piston speed" + ("" if alike else f", cylinder {number}")
-        rows.append(_row(name, "m/s", mean))
-    return rows
-
-
 def _words(load: JointForce | Peak) -> str:
     name = load.joint if isinstance(load, JointForce) else load.name
     return "|side force|" if name == "side force" else name
 
 
-def _named(name: str, number: int | None, count: int, units: str) -> str:
+def labelled(name: str, number: int | None, count: int, units: str) -> str:
+    """A name, its number where there are many, and the unit that people read.
+
+    >>> labelled("crank pin", 2, 4, "Pa")
+    'crank pin 2 [bar]'
+    """
     number_of = f" {number}" if number is not None and count > 1 else ""
     unit = f" [{displayed(units)[1]}]" if units != "1" else ""
     return f"{name}{number_of}{unit}"
 
 
 def _row(name: str, units: str, estimate: Estimate) -> list[str]:
-    return [_named(name, None, 1, units), *_cells(units, estimate)]
+    return [labelled(name, None, 1, units), *_cells(units, estimate)]
 
 
 def _cells(units: str, estimate: Estimate) -> list[str]:

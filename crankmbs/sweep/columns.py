@@ -10,8 +10,9 @@ import numpy as np
 
 from crankmbs.compare import LECTURES, QUANTITIES, largest_deviations
 from crankmbs.errors import InputError
-from crankmbs.measures import Estimate, JointForce, Measures, measure
+from crankmbs.measures import Measures, measure
 from crankmbs.measures.joints import joints_of
+from crankmbs.measures.names import angles_of, names_of, values_of
 from crankmbs.mechanics.variables import variables_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
@@ -21,7 +22,6 @@ __all__ = ["Column", "Row", "columns_of", "dims_of", "row_of", "samples_of"]
 
 Row = dict[str, Array]
 _ERROR = "_error"
-_CYLINDER = ("cylinder",)
 _FORMULAS = ("lecture", "quantity")
 
 
@@ -33,21 +33,6 @@ class Column(NamedTuple):
     dims: tuple[str, ...] = ()
 
 
-_MEASURES = {
-    "mean_speed": Column("rad/s", "mean speed"),
-    "fluctuation": Column("1", "coefficient of fluctuation, (max - min) / mean speed"),
-    "speed_gain": Column("rad/s", "drift of the speed over the window"),
-    "crank_torque": Column("N m", "mean gas and inertia torque"),
-    "external_torque": Column("N m", "mean load torque (drive, where positive)"),
-    "indicated_power": Column("W", "indicated power"),
-    "imep": Column("Pa", "indicated mean effective pressure", _CYLINDER),
-    "imep_crank_end": Column("Pa", "indicated mean effective pressure, crank end", _CYLINDER),
-    "indicated_power_head_end": Column("W", "indicated power of the head ends"),
-    "indicated_power_crank_end": Column("W", "indicated power of the crank ends"),
-    "friction_power": Column("W", "friction power"),
-    "mechanical_efficiency": Column("1", "mechanical efficiency"),
-    "force_power": Column("W", "power of the forces on the pistons"),
-}
 _LECTURE = Column("1", "largest deviation of the lecture, over the peak", _FORMULAS)
 
 
@@ -57,17 +42,10 @@ def columns_of(scene: Scene, *, series: bool) -> dict[str, Column]:
     >>> "fluctuation_error" in columns_of(load_scene("propeller"), series=False)
     True
     """
-    without = set() if scene.gas is not None else {"indicated_power", "imep"}
-    without |= set() if scene.double_acting else {n for n in _MEASURES if n.endswith("_end")}
-    without |= set() if scene.friction is not None else {"friction_power", "mechanical_efficiency"}
-    without |= set() if scene.force else {"force_power"}
-    columns = {name: column for name, column in _MEASURES.items() if name not in without}
-    joints = _joints(scene)
-    for joint, dims in joints.items():
-        words = joint.replace("_", " ")
-        force = "side force" if joint == "side_force" else f"{words} force"
-        columns[f"{joint}_peak"] = Column("N", f"largest {force}", dims)
-        columns[f"{joint}_mean"] = Column("N", f"mean {force} over time", dims)
+    columns = {
+        name: Column(about.units, about.words, (about.of,) if about.of else ())
+        for name, about in names_of(scene).items()
+    }
     if scene.fuel is None:  # the lectures know one pressure for all firings
         columns["lecture_deviation"] = _LECTURE
     if series:
@@ -82,20 +60,18 @@ def columns_of(scene: Scene, *, series: bool) -> dict[str, Column]:
         )
         for name, column in columns.items()
     }
-    for joint, dims in joints.items():
-        angle = "cycle angle" if dims == _CYLINDER else "crank angle"
-        words = joint.replace("_", " ")
+    for joint, of in _joints(scene).items():
+        angle = "cycle angle" if of == "cylinder" else "crank angle"
+        words, dims = joint.replace("_", " "), (of,) if of else ()
         errors[f"{joint}_peak_angle"] = Column("rad", f"{angle} of the largest {words}", dims)
     errors["energy_closure"] = Column("1", "largest energy residual over peak kinetic energy")
     errors["relative_error"] = Column("1", "relative global error, estimated")
     return columns | errors
 
 
-def _joints(scene: Scene) -> dict[str, tuple[str, ...]]:
-    """The joints of a scene by name, and over which dimension each is one of many."""
-    return {
-        joint.joint.replace(" ", "_"): (joint.of,) if joint.of else () for joint in joints_of(scene)
-    }
+def _joints(scene: Scene) -> dict[str, str]:
+    """The joints of a scene by name, and what each is one of."""
+    return {joint.joint.replace(" ", "_"): joint.of for joint in joints_of(scene)}
 
 
 def dims_of(scene: Scene, *, series: bool) -> dict[str, tuple[str, ...] | tuple[int, ...]]:
@@ -122,7 +98,7 @@ def row_of(result: Result, samples: int | None) -> Row:
     ------
     InputError : more samples
     """
-    row = _measured(measure(result), result.scene)
+    row = _measured(measure(result))
     row["relative_error"] = np.array(result.error.estimated)
     if result.scene.fuel is None:
         row |= _lectured(result)
@@ -153,29 +129,21 @@ def samples_of(scene: Scene) -> int:
     return math.floor(end / every) + 2
 
 
-def _measured(measures: Measures, scene: Scene) -> Row:
+def _measured(measures: Measures) -> Row:
     row: Row = {"energy_closure": np.array(measures.energy_closure)}
-    for name in _MEASURES:
-        _put(row, name, getattr(measures, name))
-    for joint, dims in _joints(scene).items():
-        of_one = [force for force in measures.joints if force.joint.replace(" ", "_") == joint]
-        single = not dims
-        for statistic in ("peak", "mean"):
-            estimates = tuple(getattr(force, statistic) for force in of_one)
-            _put(row, f"{joint}_{statistic}", estimates[0] if single else estimates)
-        angles = np.array([_angle(force, scene.period) for force in of_one])
-        row[f"{joint}_peak_angle"] = angles[0] if single else angles
+    scene, angles = measures.scene, angles_of(measures)
+    names = names_of(scene)
+    for name, estimates in values_of(measures).items():
+        pairs = np.array(estimates, dtype=np.float64).T
+        row[name], row[f"{name}{_ERROR}"] = pairs if names[name].of else pairs[:, 0]
+    for joint, of in _joints(scene).items():
+        places = np.array([_angle(*each, scene.period) for each in angles[f"{joint}_peak"]])
+        row[f"{joint}_peak_angle"] = places if of else places[0]
     return row
 
 
-def _put(row: Row, name: str, estimates: Estimate | tuple[Estimate, ...] | None) -> None:
-    if estimates is not None:
-        value, error = np.array(estimates, dtype=np.float64).T
-        row[name], row[f"{name}{_ERROR}"] = value, error
-
-
-def _angle(joint: JointForce, period: float) -> float:
-    return joint.crank_angle % period if joint.cycle_angle is None else joint.cycle_angle
+def _angle(crank: float, cycle: float | None, period: float) -> float:
+    return crank % period if cycle is None else cycle
 
 
 def _lectured(result: Result) -> Row:

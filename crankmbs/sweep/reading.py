@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import re
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
@@ -11,7 +12,6 @@ import numpy as np
 from crankmbs.compare import LECTURES, QUANTITIES
 from crankmbs.errors import InputError, shown
 from crankmbs.measures import Estimate
-from crankmbs.scene.sentences import did_you_mean
 from crankmbs.scene.units import quantity
 from crankmbs.sweep.columns import Column, Row
 
@@ -25,26 +25,32 @@ __all__ = ["Reading", "amount_of", "check_free", "reading_of"]
 _DEVIATION = "lecture_deviation"
 _LECTURES = {name.partition(" ")[0].lower(): name for name in LECTURES}  # "s1", "untruncated"
 _DIMENSIONS = {"N": "force", "N m": "torque", "Pa": "pressure", "W": "power"}
-_DIMENSIONS |= {"rad": "angle", "rad/s": "angular speed"}
+_DIMENSIONS |= {"rad": "angle", "rad/s": "angular speed", "m/s": "speed"}
 _SHARE = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(%?)\s*")
 _OF_SPEED = ("fluctuation", "mean_speed")
-_PEAK = re.compile(r"(peak|largest|mean) (main bearing|crank pin|piston pin|side)(?: force)?")
+_LARGEST = {"peak", "largest", "max"}
+_NO_NAMES = {"over", "time", "the", "of", "and", "cylinder"}
+_WINDOW = re.compile(r"over the (?:(?:last|whole|settled) )?(?:cycle|revolution|period|run|window)")
+_UNIT = re.compile(r"\[.*\]|\(.*")
 
 
 class Reading(NamedTuple):
-    """A column, of cylinders the largest value; of deviations that of one lecture and quantity."""
+    """A column, of cylinders the largest value or that of one number; of deviations that of one
+    lecture and quantity; sign : -1 of the drive power, which is what the brake power is not."""
 
     column: str
     about: Column
     lecture: str = ""
     quantity: str = ""
+    number: int | None = None
+    sign: float = 1.0
 
     @property
     def words(self) -> str:
         """What a reader is told it is."""
-        if not self.lecture:
-            return self.about.long_name
-        return f"largest error of {self.quantity} by {self.lecture}, over its peak"
+        if self.lecture:
+            return f"largest error of {self.quantity} by {self.lecture}, over its peak"
+        return f"{self.about.long_name}{f', {self.number}' if self.number else ''}"
 
     def of_row(self, row: Row) -> Estimate:
         """It in one case, with its error; NaN where the case has none."""
@@ -54,7 +60,10 @@ class Reading(NamedTuple):
         if self.lecture:
             at = list(LECTURES).index(self.lecture), list(QUANTITIES).index(self.quantity)
             return Estimate(float(value[at]), float(error[at]))
-        return Estimate(float(np.max(value)), float(np.max(error)))
+        if self.number is not None:
+            self._check(len(value))
+            value, error = value[self.number - 1], error[self.number - 1]
+        return Estimate(self.sign * float(np.max(value)), float(np.max(error)))
 
     def of_sweep(self, data: xr.Dataset) -> tuple[xr.DataArray, float]:
         """It in every case, and the largest of its errors."""
@@ -63,38 +72,77 @@ class Reading(NamedTuple):
             at = {"lecture": self.lecture, "quantity": self.quantity}
             value, error = value.sel(at), error.sel(at)
         elif many := [of for of in ("cylinder", "journal", "pin") if of in value.dims]:
-            value = value.max(many)
-        return value, float(error.max())
+            if self.number is not None:
+                self._check(data.sizes[many[0]])
+                one = {many[0]: self.number - 1}
+                value, error = value.isel(one, drop=True), error.isel(one, drop=True)
+            else:
+                value = value.max(many)
+        return self.sign * value, float(error.max())
+
+    def _check(self, count: int) -> None:
+        assert self.number is not None
+        if not 1 <= self.number <= count:
+            raise InputError(f"{self.words}: there are {count}; give a number from 1 to {count}")
 
 
 def reading_of(text: str, columns: Mapping[str, Column]) -> Reading:
-    """What is read of each case: a column's name in words, such as "fluctuation", "peak crank pin
-    force" or "mean speed"; or what a lecture is off by, "side thrust by S1".
+    """What is read of each case: a measure under any name that commands print, with or without its
+    unit, such as "fluctuation", "peak crank pin force", "crank pin 2 [N]" or "brake power"; or what
+    a lecture is off by, "side thrust by S1".
 
     Raises
     ------
-    InputError : no such words
+    InputError : no such measure
 
     >>> from crankmbs.sweep.columns import columns_of
     >>> columns = columns_of(load_scene("propeller"), series=False)
     >>> reading_of("peak main bearing force", columns).column
     'main_bearing_peak'
     """
-    words = " ".join(text.replace("_", " ").split())
-    quantity, by, lecture = words.rpartition(" by ")
-    if by and quantity in QUANTITIES and lecture.lower() in _LECTURES and _DEVIATION in columns:
-        return Reading(_DEVIATION, columns[_DEVIATION], _LECTURES[lecture.lower()], quantity)
-    match = _PEAK.fullmatch(words)
-    if match:
-        joint = "side force" if match[2] == "side" else match[2]
-        words = f"{joint} {'mean' if match[1] == 'mean' else 'peak'}"
-    known = {name.replace("_", " "): name for name in columns if f"{name}_error" in columns}
-    known = {words: name for words, name in known.items() if name != _DEVIATION}
-    if words in known:
-        return Reading(known[words], columns[known[words]])
-    listed = [name for name in known if not name.startswith("series ")]
-    near = did_you_mean(words, listed) or f"; known are {', '.join(listed)}, and QUANTITY by S1"
-    raise InputError(f"{shown(text)} is nothing that a case has{near}")
+    words = " ".join(_UNIT.sub("", text.replace("_", " ")).split())
+    quantity, by, lecture = words.removeprefix("largest error of ").rpartition(" by ")
+    name = _LECTURES.get(lecture.partition(" ")[0].lower())
+    if by and quantity in QUANTITIES and name and _DEVIATION in columns:
+        return Reading(_DEVIATION, columns[_DEVIATION], name, quantity)
+    names = [name for name in columns if f"{name}_error" in columns and name != _DEVIATION]
+    names = [name for name in names if not name.startswith("series_")]
+    known = {key: name for name in names for key in _keys(name, columns[name].long_name)}
+    key = _key(words)
+    number = next((int(word) for word in key if word.isdecimal()), None)
+    key = frozenset(word for word in key if not word.isdecimal())
+    if key == {"drive", "power"} and "brake_power" in columns:
+        return Reading("brake_power", Column("W", "drive power"), sign=-1.0)
+    if key in known and (number is None or columns[known[key]].dims):
+        return Reading(known[key], columns[known[key]], number=number)
+    listed = [name.replace("_", " ") for name in names]
+    near = difflib.get_close_matches(words, listed, n=3)
+    listed = [*near, *(name for name in listed if name not in near)]
+    hint = f'; did you mean "{near[0]}"? There' if near else "; there"
+    raise InputError(
+        f"{shown(text)} is no measure of these cases{hint} are {', '.join(listed)}, and QUANTITY "
+        "by S1"
+    )
+
+
+def _key(words: str) -> frozenset[str]:
+    """The words that tell measures apart, in any order."""
+    plain = _WINDOW.sub("", _UNIT.sub("", words.lower())).replace("|", " ").replace(",", " ")
+    names = {"peak" if word in _LARGEST else word for word in plain.split()}
+    return frozenset(names - _NO_NAMES)
+
+
+def _keys(name: str, long_name: str) -> set[frozenset[str]]:
+    """What a column may be called; of a force also without that word, and its peak without that."""
+    keys = {_key(name.replace("_", " ")), _key(long_name)}
+    if name.endswith(("_peak", "_mean")):
+        keys |= {key - {"force"} for key in keys}
+        if "_specific_" not in name:
+            keys |= {key - {"peak"} for key in keys}
+        keys |= {key | {"force"} for key in keys}
+    elif name.startswith(("gauge_pressure", "torque_")):
+        keys |= {key | {"peak"} for key in keys}
+    return keys
 
 
 def check_free(scene: Scene, reading: Reading, names: Sequence[str]) -> None:

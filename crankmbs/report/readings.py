@@ -1,0 +1,93 @@
+"""Every quantity at one crank angle as tables of words, and numbers of a run as pandas tables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
+
+from crankmbs.compare import AtAngle, Reading
+from crankmbs.digits import digits, error_digits
+from crankmbs.display import displayed
+from crankmbs.measures import Estimate, Measures
+from crankmbs.measures.names import angles_of, names_of, values_of
+from crankmbs.report.rows import Table, labelled
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["measures_frame", "passed_at", "reading_tables", "readings_frame"]
+
+Row = tuple[str, str, Estimate, Mapping[str, str | float]]
+"""A label, SI units, the number with its error, and further columns."""
+
+
+def reading_tables(state: AtAngle) -> list[Table]:
+    """Every quantity at one crank angle: a table of the engine, one with a column a cylinder."""
+    rows: dict[tuple[bool, str, str], list[Reading]] = {}
+    for reading in state.readings:
+        key = reading.cylinder is not None, reading.words, reading.symbol
+        rows.setdefault(key, []).append(reading)
+    engine = [_line(*key[1:], row) for key, row in rows.items() if not key[0]]
+    cylinders = [_line(*key[1:], row) for key, row in rows.items() if key[0]]
+    columns = [f"cylinder {k}" for k in range(1, len(cylinders[0]) - 2)]
+    within = math.degrees(state.crank_angle) % math.degrees(state.scene.period)
+    place = f"at {round(within, 9):.9g} deg of the last cycle"
+    return [
+        Table([place, "symbol", "value", "num. error"], engine),
+        Table([place, "symbol", *columns, "num. error"], cylinders),
+    ]
+
+
+def passed_at(state: AtAngle) -> str:
+    """When and where the crank passes the angle, in words."""
+    degrees = round(math.degrees(state.crank_angle), 9)
+    time = digits(state.time, most=10)
+    return f"passed at {time} s, at a crank angle of {degrees:.9g} deg"
+
+
+def readings_frame(state: AtAngle) -> pd.DataFrame:
+    """Every quantity at one crank angle, in the units that people read."""
+    many = len(state.scene.cylinders)
+    return _frame(
+        (
+            labelled(reading.words, reading.cylinder, many, reading.units),
+            reading.units,
+            Estimate(reading.value, reading.error),
+            {"symbol": reading.symbol},
+        )
+        for reading in state.readings
+    )
+
+
+def measures_frame(measures: Measures) -> pd.DataFrame:
+    """Every measure of a run, in the units that people read; of peaks where they are."""
+    names, angles, rows = names_of(measures.scene), angles_of(measures), list[Row]()
+    period = measures.scene.period
+    for name, estimates in values_of(measures).items():
+        words, units = names[name].words, names[name].units
+        for k, estimate in enumerate(estimates):
+            crank, cycle = angles[name][k] if name in angles else (math.nan, None)
+            degrees = {
+                "crank angle [deg]": math.degrees(crank % period),
+                "cycle angle [deg]": math.nan if cycle is None else math.degrees(cycle),
+            }
+            rows.append((labelled(words, k + 1, len(estimates), units), units, estimate, degrees))
+    return _frame(rows)
+
+
+def _frame(rows: Iterable[Row]) -> pd.DataFrame:
+    import pandas as pd
+
+    lines: dict[str, dict[str, str | float]] = {}
+    for label, units, estimate, further in rows:
+        scale = displayed(units)[0]
+        lines[label] = {part: getattr(estimate, part) / scale for part in ("value", "error")}
+        lines[label] |= further
+    return pd.DataFrame.from_dict(lines, orient="index")
+
+
+def _line(name: str, symbol: str, row: list[Reading]) -> list[str]:
+    scale, units = displayed(row[0].units)
+    values = [digits(reading.value / scale, reading.error / scale, most=9) for reading in row]
+    return [f"{name} [{units}]", symbol, *values, error_digits(row[0].error / scale)]
