@@ -94,6 +94,17 @@ def test_a_title_is_written_as_it_is(title):
     assert not figure.texts[-1].get_parse_math()
 
 
+@pytest.mark.parametrize(
+    ("title", "above"),
+    [("", []), ("word " * 30, [74, 74]), ("word " * 100, [119, 119, 118])],
+)
+def test_a_title_is_written_on_lines_of_about_one_length(title, above):
+    figure = speed_figure(last_view(simulate(dataclasses.replace(BARE, title=title))))
+    *lines, last = figure.get_supxlabel().split("\n")
+    assert last.startswith("crank speed over")
+    assert list(map(len, lines)) == above
+
+
 @pytest.mark.parametrize("draw", [*STRIPS, *POLAR])
 def test_a_caption_states_the_window_and_the_largest_relative_error(draw):
     view = last_view(simulate(BARE))

@@ -117,7 +117,7 @@ def _finish(figure: Figure, ax: Axes, view: View, joint: str) -> None:
 
 
 def _caption(figure: Figure, view: View, joint: str, angle: str) -> None:
-    about = f"{joint} force over the {view.window.kind}, dots labelled by {angle} [deg]"
+    about = f"{joint} force over the {view.window.kind}; dots: {angle} [deg]"
     exact = view.exactness(f"{joint.replace(' ', '_')}_force")
     footer(figure, view.result, about, exact)
 

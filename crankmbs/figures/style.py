@@ -57,8 +57,8 @@ FLAT = 1e-6  # of the mean: what varies less is drawn as constant
 _SAME = 1e-3  # of the range of a panel's curves: less than a pixel of it, a fifth of a line
 _SMALLER = 2  # points: text at the dead centres and of the caption, than the type of the figure
 _FAST = {"compress_level": 3}  # of a PNG: a third less time for a sixth more bytes
-_LINE, _LETTER = 1.27, 0.6  # of its size: a line of text, and a letter's width with some margin
-_HANDLE = 4.5  # of the type's size: a line in a legend with its gaps
+_LINE, _LETTER = 1.27, 0.55  # of its size: a line of text, and a letter's width, rather more
+_HANDLE = 5.0  # of the type's size: a line in a legend with its gaps
 
 STYLE: Any = {
     "figure.dpi": 150,
@@ -276,12 +276,18 @@ def caption(figure: Figure, lines: Iterable[str]) -> None:
     """Write lines under the figure as they are, in a title a $ is no formula; what is wider than
     the figure goes on below, on three lines at most."""
     letters = int(figure.get_figwidth() * 72.0 / (_LETTER * _small()))
-    text = "\n".join(
-        part
-        for line in lines
-        for part in textwrap.wrap(line, letters, max_lines=3, placeholder=" ...")
-    )
-    figure.supxlabel(text, fontsize=_small(), color="0.35", parse_math=False)
+    parts = [part for line in lines for part in _wrapped(line, letters)]
+    figure.supxlabel("\n".join(parts), fontsize=_small(), color="0.35", parse_math=False)
+
+
+def _wrapped(text: str, letters: int) -> list[str]:
+    """Text on as few lines as fit, of about one length."""
+    parts = textwrap.wrap(text, letters, max_lines=3, placeholder=" ...")
+    for width in range(len(text) // len(parts) if parts else letters, letters):
+        even = textwrap.wrap(text, width)
+        if len(even) == len(parts):
+            return even
+    return parts
 
 
 def one_curve_each(*panels: Array) -> list[list[int]]:
