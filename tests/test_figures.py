@@ -289,7 +289,11 @@ def test_difference_figure_shows_every_quantity_beside_both_errors(four):
     shown = [ax.get_title(loc="left") for ax in figure.axes if ax.get_visible()]
     assert shown == [row.quantity for row in rows]
     for ax, row in zip(figure.axes, rows, strict=False):
-        levels = [line.get_ydata()[0] for line in ax.lines if line.get_label().startswith("stated")]
+        levels = [
+            line.get_ydata()[0]
+            for line in ax.lines
+            if line.get_label().startswith("numerical error of")
+        ]
         assert ax.get_yscale() == "log"
         assert levels == pytest.approx([error / row.peak for error in row.errors])
     figure.draw_without_rendering()
@@ -307,7 +311,7 @@ def test_differences_of_cylinders_that_coincide_in_every_panel_are_one_curve(fou
     rows = differences(four.result, shifted(other, "piston_velocity", [3.0, 5.0, 5.0, 3.0]))
     figure = difference_figure(four.result, rows)
     for ax, row in zip(figure.axes, rows, strict=False):
-        lines = [line for line in ax.lines if not line.get_label().startswith("stated")]
+        lines = [line for line in ax.lines if not line.get_label().startswith("numerical error of")]
         several = row.size.shape[1] > 1
         assert [line.get_label() for line in lines] == (labels if several else ["difference"])
         if row.quantity == "side force":

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import re
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from crankmbs.figures import (
     speed_figure,
     torque_figure,
 )
+from crankmbs.figures.view import exactness
 
 pytestmark = pytest.mark.slow
 
@@ -68,13 +70,14 @@ def test_a_run_sampled_in_angle_shows_its_speed_over_the_angle():
 
 
 @pytest.mark.parametrize("draw", POLAR)
-def test_a_caption_of_three_lines_keeps_clear_of_the_axes(draw):
-    view = last_view(simulate(load_scene("v_twin")))
-    figure = draw(view)
-    assert figure.get_supxlabel().count("\n") == 2
+def test_a_caption_of_several_lines_keeps_clear_of_the_axes(draw):
+    scene = load_scene("v_twin")
+    figure = draw(last_view(simulate(dataclasses.replace(scene, title=2 * scene.title))))
+    assert figure.get_supxlabel().count("\n") >= 2
     figure.draw_without_rendering()
     point = figure.dpi / 72.0
     caption = figure.texts[-1].get_window_extent()
+    assert 0.0 < caption.x0 < caption.x1 < figure.bbox.width
     lowest = min(ax.get_tightbbox().y0 for ax in figure.axes)
     assert lowest - caption.y1 > 5.0 * point
     for legend in figure.legends:
@@ -87,8 +90,46 @@ def test_a_title_is_written_as_it_is(title):
     view = last_view(simulate(dataclasses.replace(BARE, title=title)))
     figure = speed_figure(view)
     figure.draw_without_rendering()
-    assert figure.get_supxlabel() == f"{title}\ncrank speed (crank_angle)"
+    assert figure.get_supxlabel().startswith(f"{title}\ncrank speed over the last cycle, above")
     assert not figure.texts[-1].get_parse_math()
+
+
+@pytest.mark.parametrize(
+    ("title", "above"),
+    [("", []), ("word " * 30, [74, 74]), ("word " * 100, [119, 119, 118])],
+)
+def test_a_title_is_written_on_lines_of_about_one_length(title, above):
+    figure = speed_figure(last_view(simulate(dataclasses.replace(BARE, title=title))))
+    *lines, last = figure.get_supxlabel().split("\n")
+    assert last.startswith("crank speed over")
+    assert list(map(len, lines)) == above
+
+
+@pytest.mark.parametrize("draw", [*STRIPS, *POLAR])
+def test_a_caption_states_the_window_and_the_largest_relative_error(draw):
+    view = last_view(simulate(BARE))
+    lines = draw(view).get_supxlabel().replace("\n", " ")
+    assert re.search(r" over the last cycle.*; numerical error at most \S+ % of the peak$", lines)
+
+
+def test_the_error_of_a_caption_is_that_of_the_worst_variable_where_it_is_drawn():
+    def of(values, error):
+        return ("time",), np.array(values), {"error_estimate": error}
+
+    variables = {"speed": of([100.0, 4.0, -5.0], 1e-3), "pin_x": of([0.0, 2.0, 0.0], 1e-3)}
+    variables |= {"pin_y": of([0.0, 0.0, 0.0], 2e-3), "none": of([0.0, 0.0, 0.0], 1.0)}
+    assert exactness(variables, "speed").endswith("at most 0.0010 % of the peak")
+    assert exactness(variables, "speed", first=1).endswith("at most 0.020 % of the peak")
+    assert exactness(variables, "speed", "pin", "none").endswith("at most 0.10 % of the peak")
+    variables["alone"] = of([1.0], math.inf)
+    assert exactness(variables, "speed", "alone") == "numerical error unknown"
+
+
+def test_a_legend_is_no_wider_than_its_figure():
+    figure = torque_figure(last_view(simulate(load_scene("run_down"))))
+    figure.draw_without_rendering()
+    (box,) = (legend.get_window_extent() for legend in figure.legends)
+    assert 0.0 < box.x0 < box.x1 < figure.bbox.width
 
 
 def test_a_run_without_any_order_has_one_panel():

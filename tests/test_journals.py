@@ -253,11 +253,11 @@ def test_loads_are_drawn_in_the_frame_of_the_body_that_carries_them():
     load = -(rod * np.exp(-1j * (angle[:, None] + phases))).sum(axis=1)
     assert drawn[3] * scale == pytest.approx(load)
     titles = [axes.get_title() for axes in (shell, journal, big_end, pin)]
-    assert [title.split(":")[0] for title in titles] == [
-        "main shells",
-        "main journals",
-        "big-end shells",
-        "crank pins",
+    assert [title.split(",")[0] for title in titles] == [
+        "load on main bearing shells",
+        "load on main journals",
+        "load on big-end shells",
+        "load on crank pins",
     ]
     with pytest.raises(InputError, match="bearings = Bearings"):
         simulate(TWIN).plot("bearings")
@@ -284,7 +284,8 @@ def test_journals_of_one_curve_are_drawn_once_and_every_panel_names_its_own():
     """Throws 1 and 4 of an inline four fire one turn apart, and so do 2 and 3."""
     figure = simulate(DIESEL).plot("bearings")
     names = [[text.get_text() for text in ax.get_legend().texts] for ax in figure.axes]
-    journals, pins = ["journals 1, 5", "journals 2, 4", "journal 3"], ["cylinders 1, 2, 3, 4"]
+    journals = ["main journals 1, 5", "main journals 2, 4", "main journal 3"]
+    pins = ["cylinders 1, 2, 3, 4"]
     assert names == [journals, journals, pins, pins]
     assert not figure.legends
-    assert "on the curve of journal 1" in figure.get_supxlabel()
+    assert "on the curve of main journal 1" in figure.get_supxlabel()

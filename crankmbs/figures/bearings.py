@@ -20,7 +20,7 @@ from crankmbs.figures.view import Plane, View
 
 __all__ = ["bearings_figure"]
 
-_CRANK = ("along the crank's reference line", "90 deg ahead of that line")
+_CRANK = ("along the crank's reference line", "90 deg ahead of the crank's reference line")
 _ROD = ("along the rod, to the piston pin", "90 deg ahead of the rod")
 
 
@@ -33,20 +33,23 @@ def bearings_figure(view: View) -> Figure:
     for ax in axes if len(view.scene.cylinders) > 1 else axes[:2]:
         columns = min(len(ax.get_legend_handles_labels()[1]), 4)
         ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=columns)
-    above = "above crank angle [deg], on the curve of journal 1"
-    below = "below cycle angle of cylinder 1 [deg], on its curve or its pin's"
-    footer(figure, view.result, f"marks: {above}; {below}; {view.window.kind}")
+    about = (
+        f"bearing loads over the {view.window.kind}; dots: above crank angle [deg], on the curve "
+        "of main journal 1, below cycle angle [deg], on that of cylinder 1 or of its pin"
+    )
+    exact = view.exactness("main_journal_force", "crank_pin_force")
+    footer(figure, view.result, about, exact)
     return figure
 
 
 def _draw_journals(view: View, shell: Axes, journal: Axes) -> None:
     force = view.force("main_journal_force")
-    labels = {group[0]: _named("journal", group) for group in _shared(view, force)}
+    labels = {group[0]: _named("main journal", group) for group in _shared(view, force)}
     turning = force * np.exp(-1j * np.radians(view.degrees))[:, None]
     draw_polar(shell, -force, view.degrees, labels, ENGINE)
     draw_polar(journal, turning, view.degrees, labels, _CRANK)
-    shell.set_title("main shells: load, engine's frame")
-    journal.set_title("main journals: load, turning with the crank")
+    shell.set_title("load on main bearing shells, engine's frame")
+    journal.set_title("load on main journals, turning with the crank")
 
 
 def _shared(view: View, force: Plane) -> list[list[int]]:
@@ -73,7 +76,7 @@ def _draw_pins(view: View, shell: Axes, pin: Axes) -> None:
     force, cycles = view.force("crank_pin_force"), view.cycle_degrees
     swung = force * np.exp(1j * view.values("rod_angle"))
     draw_polar(shell, swung, cycles[:, 0], alike(view, swung), _ROD)
-    shell.set_title("big-end shells: load, swinging with the rod")
+    shell.set_title("load on big-end shells, swinging with the rod")
     turned = -force * np.exp(-1j * np.radians(cycles))
     labels = alike(view, turned)
     throws = view.scene.throws
@@ -82,9 +85,9 @@ def _draw_pins(view: View, shell: Axes, pin: Axes) -> None:
         count = len(throws.unbalances)
         pins = [turned[:, numbers == throw].sum(axis=1) for throw in range(count)]
         turned, cycles = np.stack(pins, axis=1), cycles[:, [throws.numbers.index(0)]]
-        labels = {throw: _named("pin", [throw]) for throw in range(count)}
+        labels = {throw: _named("crank pin", [throw]) for throw in range(count)}
     draw_polar(pin, turned, cycles[:, 0], labels, THROW)
-    pin.set_title("crank pins: load of all rods, turning with the throw")
+    pin.set_title("load on crank pins, turning with the throw")
 
 
 def _named(part: str, group: list[int]) -> str:

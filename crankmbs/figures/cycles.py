@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
@@ -18,7 +20,8 @@ from crankmbs.figures.style import (
     panels,
     whose,
 )
-from crankmbs.figures.view import over_time
+from crankmbs.figures.view import exactness, over_time
+from crankmbs.measures.peaks import torque_of_rods
 from crankmbs.motion.labels import Table
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
@@ -42,22 +45,25 @@ def cycles_figure(result: Result) -> Figure:
     """
     cycles = result.cycle_table
     number = cycles.values("cycle")
-    with_gas, double = "imep" in cycles.variables, result.scene.double_acting
-    figure, axes = panels(1 + with_gas, 1, 10.0, 3.5 * (1 + with_gas))
+    double = result.scene.double_acting
+    ends = {"imep": "head end" * double, "imep_crank_end": "crank end"}
+    names = [name for name in ends if name in cycles.variables]
+    rows = 2 if names else 1
+    figure, axes = panels(rows, 1, 10.0, 3.5 * rows)
     least, largest, mean = (
         cycles.values(f"{name}_speed") / RPM for name in ("least", "largest", "mean")
     )
     edges = np.stack([number - 0.5, number + 0.5], axis=1).ravel()
     between = np.repeat(least, 2), np.repeat(largest, 2)
-    axes[0].fill_between(edges, *between, color=COLOURS[4], alpha=0.4, label="least to largest")
-    axes[0].plot(edges, np.repeat(mean, 2), color="black", label="mean")
+    band: Any = {"color": COLOURS[4], "alpha": 0.4, "label": "least to largest speed"}
+    axes[0].fill_between(edges, *between, **band)
+    axes[0].plot(edges, np.repeat(mean, 2), color="black", label="mean speed")
     axes[0].set_ylabel("crank speed [rpm]")
-    if with_gas:
-        names = {"imep": "head end", "imep_crank_end": "crank end"} if double else {"imep": ""}
-        for k, (name, end) in enumerate(names.items()):
+    if names:
+        for k, name in enumerate(names):
             imep = cycles.values(name) / BAR
             for group in one_curve_each(imep):
-                label = f"{whose(group)} {end}".rstrip()
+                label = f"{whose(group)} {ends[name]}".rstrip()
                 line = line_of(group[0] + k * imep.shape[1])
                 axes[1].plot(edges, np.repeat(imep[:, group[0]], 2), **line, label=label)
         keep_flat(axes[1], np.concatenate([cycles.values(name) / BAR for name in names]))
@@ -68,7 +74,9 @@ def cycles_figure(result: Result) -> Figure:
     axes[-1].set_xlabel("cycle")
     legend(figure, *(axes if double or len(result.scene.cylinders) > 1 else axes[:1]))
     figure.align_ylabels(axes)
-    footer(figure, result, "cycle by cycle")
+    drawn = ["mean_speed", "least_speed", "largest_speed", *names]
+    about = "crank speed and mean effective pressure" if names else "crank speed"
+    footer(figure, result, f"{about}, cycle by cycle", exactness(cycles.variables, *drawn))
     return figure
 
 
@@ -127,11 +135,12 @@ def transient_figure(result: Result) -> Figure:
     """Crank speed, and the torque of gas and inertia beside that of loads and drive, over time."""
     names = "time", "crank_speed", "crank_torque", "external_torque"
     time, speed, torque, outside = map(over_time(result).__getitem__, names)
+    total = torque_of_rods(result.scene)
     figure, axes = panels(2, 1, 10.0, 8.0)
     axes[0].plot(time, speed / RPM, color=COLOURS[0], linewidth=1.2)
     axes[0].set_ylabel("crank speed [rpm]")
-    axes[1].plot(time, torque.sum(axis=1), color=COLOURS[4], linewidth=0.6, label="gas and inertia")
-    axes[1].plot(time, outside, color=COLOURS[1], linewidth=1.5, label="loads and drive")
+    axes[1].plot(time, torque.sum(axis=1), color=COLOURS[4], linewidth=0.6, label=total)
+    axes[1].plot(time, outside, color=COLOURS[1], linewidth=1.5, label="load and drive torque")
     axes[1].set_ylabel("torque on the crank [N m]")
     for ax in axes:
         ax.axhline(0.0, color="0.55", linewidth=1.0)
@@ -141,5 +150,6 @@ def transient_figure(result: Result) -> Figure:
     axes[-1].set_xlabel("time [s]")
     legend(figure, axes[1])
     figure.align_ylabels(axes)
-    footer(figure, result, "the whole run over time")
+    exact = exactness(result.variables, *names[1:])
+    footer(figure, result, "crank speed and torque on the crank over the whole run", exact)
     return figure

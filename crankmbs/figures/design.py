@@ -10,6 +10,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from crankmbs.design import Balance, Flywheel
+from crankmbs.digits import error_digits
 from crankmbs.figures.polar import ENGINE, draw_polar
 from crankmbs.figures.style import (
     COLOURS,
@@ -20,6 +21,7 @@ from crankmbs.figures.style import (
     panels,
     save,
 )
+from crankmbs.figures.view import exactness
 from crankmbs.measures import EngineOrders, last_span
 from crankmbs.mechanics.peaks import negligible
 from crankmbs.result import Result
@@ -44,11 +46,15 @@ def balance_figure(balance: Balance) -> Figure:
     first = last_span(balance.result).first
     degrees = np.degrees(balance.result.sampled("crank_angle")[first:])
     before, after = (path[first:] @ (1.0, 1j) for path in (balance.before, balance.after))
-    labels = {0: "before", 1: f"after, share {100 * balance.share:g} %"}
+    labels = {0: "before", 1: "after"}
     draw_polar(ax, np.stack([before, after], axis=1), degrees, labels, ENGINE)
-    ax.set_title("force on the frame, engine's frame")
+    ax.set_title("frame force, engine's frame")
     legend(figure, ax)
-    footer(figure, balance.result, "last cycle; marks: crank angle [deg]")
+    share = f"{100 * balance.share:g} % of the reciprocating mass"
+    about = f"frame force over the last cycle before and after balancing {share}; "
+    about += "dots: crank angle [deg]"
+    exact = exactness(balance.result.variables, "frame_force", first=first)
+    footer(figure, balance.result, about, exact)
     return figure
 
 
@@ -70,12 +76,16 @@ def flywheel_figure(wheel: Flywheel, curve: Sequence[tuple[float, float]]) -> Fi
     """
     figure, (ax,) = panels(1, 1, 9.0, 6.0)
     inertia, fluctuation = zip(*curve, strict=True)
-    ax.plot(inertia, [100.0 * each for each in fluctuation], color=COLOURS[0], label="settled")
+    ax.plot(
+        inertia, [100.0 * each for each in fluctuation], color=COLOURS[0], label="settled cycles"
+    )
     work, speed = wheel.work.value, wheel.mean_speed.value
     at, percent = wheel.inertia.value, 100.0 * wheel.fluctuation.value
     formula = [100.0 * work / ((each + wheel.moving) * speed**2) for each in inertia]
     dashes = (0, (5, 3))
-    ax.plot(inertia, formula, color=COLOURS[1], linestyle=dashes, label=r"W / (J $\omega^2$)")
+    ax.plot(
+        inertia, formula, color=COLOURS[1], linestyle=dashes, label=r"formula W / (J $\omega^2$)"
+    )
     ax.plot([at], [percent], "o", color="black", label=f"{percent:.4g} % with {at:.4g} kg m$^2$")
     present = at - wheel.added
     if min(inertia) <= present <= max(inertia):
@@ -87,12 +97,13 @@ def flywheel_figure(wheel: Flywheel, curve: Sequence[tuple[float, float]]) -> Fi
     for axis in (ax.xaxis, ax.yaxis):
         logarithmic(axis)
     ax.set_xlabel("inertia of crank and flywheel [kg m$^2$]")
-    ax.set_ylabel("fluctuation of the speed [%]")
+    ax.set_ylabel("coefficient of fluctuation [%]")
     legend(figure, ax)
-    about = "settled cycles"
+    about = "coefficient of fluctuation of settled cycles over the inertia"
     if wheel.moving > _NOTHING * at:
-        about += f"; J has {wheel.moving:.3g} kg m\u00b2 of rods and pistons in it"
-    footer(figure, wheel.result, about)
+        about += f"; J includes {wheel.moving:.3g} kg m\u00b2 of rods and pistons"
+    exact = f"numerical error of the inertia {error_digits(wheel.inertia.error)} kg m\u00b2"
+    footer(figure, wheel.result, about, exact)
     return figure
 
 
@@ -121,15 +132,19 @@ def orders_figure(result: Result, orders: EngineOrders) -> Figure:
         ax.bar(order - 0.5 * _WIDTH, row.orders.amplitude, _WIDTH, color=COLOURS[0], label="run")
         if row.closed is not None:
             closed = np.abs(row.closed)
-            label = "closed form, constant speed"
+            label = "inertia alone, constant speed"
             ax.bar(order + 0.5 * _WIDTH, closed, _WIDTH, color=COLOURS[1], label=label)
         ax.set_xlim(0.0, float(order[-1]) + 0.5)
         ax.set_ylabel(f"{row.quantity}\n[{row.units}]")
     axes[-1].set_xlabel("order [1/revolution]")
     legend(figure, axes[-1])
     figure.align_ylabels(axes)
-    nothing = f"; {', '.join(sorted(zero))}: none" if zero else ""
-    footer(figure, result, f"orders over the {orders.window.kind}{nothing}")
+    nothing = f" ({', '.join(sorted(zero))}: zero but for rounding)" if zero else ""
+    shares = [row.orders.error / largest[row.quantity] for row in rows if largest[row.quantity]]
+    worst = error_digits(100.0 * max(shares, default=0.0))
+    exact = f"numerical error at most {worst} % of the largest"
+    about = f"amplitudes of the orders over the {orders.window.kind}{nothing}"
+    footer(figure, result, about, exact)
     return figure
 
 

@@ -54,9 +54,11 @@ def difference_figure(result: Result, differences: tuple[Difference, ...]) -> Fi
         ax.set_ylim(low, high)
     for ax in axes[-_COLUMNS:]:
         ax.set_xlabel("crank angle [rev]")
-    figure.supylabel("difference / peak of the quantity [1]")
+    figure.supylabel("difference over the peak of the quantity [1]")
     legend(figure, max(axes, key=lambda ax: len(ax.lines)))
-    footer(figure, result, f"difference from {differences[0].formulations[1]}")
+    first, second = differences[0].formulations
+    about = f"difference between {first} and {second}, beside the numerical error of each"
+    footer(figure, result, about)
     return figure
 
 
@@ -78,6 +80,8 @@ def _draw(ax: Axes, row: Difference, sizes: Array, groups: list[list[int]]) -> N
         label = whose(group) if several else "difference"
         ax.semilogy(turned, sizes[:, group[0]], **line_of(group[0]), linewidth=1.2, label=label)
     for error, name, dashes in zip(row.errors, row.formulations, (":", "--"), strict=True):
-        ax.axhline(error / peak, color="black", linestyle=dashes, label=f"stated by {name}")
+        ax.axhline(
+            error / peak, color="black", linestyle=dashes, label=f"numerical error of {name}"
+        )
     ax.locator_params(axis="x", nbins=5)
     ax.set_title(row.quantity, loc="left")

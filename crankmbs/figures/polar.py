@@ -61,7 +61,7 @@ def main_bearing_figure(view: View) -> Figure:
     figure, (ax,) = panels(1, 1, 8.0, 8.0)
     draw_polar(ax, view.force("main_bearing_force"), view.degrees, {0: ""}, ENGINE)
     ax.set_title("main bearing: bearing on crank, engine's frame")
-    _caption(figure, view, "crank angle")
+    _caption(figure, view, "main bearing", "crank angle")
     return figure
 
 
@@ -75,7 +75,7 @@ def crank_pin_figure(view: View) -> Figure:
     fixed.set_title("crank pin: crank on rod, cylinder's frame")
     draw_polar(turning, force * np.exp(-1j * np.radians(cycles)), cycles[:, 0], labels, THROW)
     turning.set_title("crank pin: crank on rod, turning with the crank")
-    _finish(figure, fixed, view)
+    _finish(figure, fixed, view, "crank pin")
     return figure
 
 
@@ -86,7 +86,7 @@ def piston_pin_figure(view: View) -> Figure:
     force = view.force("piston_pin_force")
     draw_polar(ax, force, view.cycle_degrees[:, 0], alike(view, force), _CYLINDER)
     ax.set_title("piston pin: rod on piston, cylinder's frame")
-    _finish(figure, ax, view)
+    _finish(figure, ax, view, "piston pin")
     return figure
 
 
@@ -109,15 +109,17 @@ def alike(view: View, *panels: Plane | Array) -> dict[int, str]:
     return {group[0]: whose(group) for group in one_curve_each(*map(beside, parts))}
 
 
-def _finish(figure: Figure, ax: Axes, view: View) -> None:
+def _finish(figure: Figure, ax: Axes, view: View, joint: str) -> None:
     several = len(view.scene.cylinders) > 1
     if several:
         legend(figure, ax)
-    _caption(figure, view, "cycle angle of cylinder 1" if several else "cycle angle")
+    _caption(figure, view, joint, f"cycle angle{' of cylinder 1' * several}")
 
 
-def _caption(figure: Figure, view: View, angle: str) -> None:
-    footer(figure, view.result, f"marks: {angle} [deg], {view.window.kind}")
+def _caption(figure: Figure, view: View, joint: str, angle: str) -> None:
+    about = f"{joint} force over the {view.window.kind}; dots: {angle} [deg]"
+    exact = view.exactness(f"{joint.replace(' ', '_')}_force")
+    footer(figure, view.result, about, exact)
 
 
 def draw_polar(

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from crankmbs.figures.style import STYLE, panels
+from crankmbs.figures.style import STYLE, legend_grid, panels
 
 __all__ = ["SLIDE", "slide", "slide_legend"]
 
@@ -28,7 +28,6 @@ SLIDE: Any = {
 _TOP = 0.855  # of the height: the headline's foot
 _ROW = 0.048  # of the height: a row of the legend
 _LETTERS = 66  # in a line of the headline
-_LETTER, _HANDLE = 0.6, 4.5  # of the type's size: a letter's width, and a line's with its gaps
 
 
 def slide(
@@ -42,8 +41,7 @@ def slide(
     figure, axes = panels(2, columns, *_SIZE)
     layout = figure.get_layout_engine()
     assert isinstance(layout, ConstrainedLayoutEngine)
-    rows, _ = _grid(labels)
-    layout.set(rect=(0.0, 0.0, 1.0, _TOP - _ROW * rows))
+    layout.set(rect=(0.0, 0.0, 1.0, _TOP - _ROW * legend_grid(labels, figure)[0]))
     first, second = headline
     for text, at, size, weight, letters in (
         (first, 0.975, _TYPE + 6, "bold", _LETTERS),
@@ -61,18 +59,8 @@ def slide_legend(figure: Figure, handles: dict[str, Artist]) -> None:
         list(handles),
         loc="upper center",
         bbox_to_anchor=(0.5, _TOP + 0.01),
-        ncols=_grid(list(handles))[1],
+        ncols=legend_grid(list(handles), figure)[1],
         frameon=False,
         borderpad=0.0,
         borderaxespad=0.0,
     )
-
-
-def _grid(labels: Sequence[str]) -> tuple[int, int]:
-    """Rows and columns of a legend, filled column by column, that is no wider than the slide."""
-    room = _SIZE[0] * 72.0 / _TYPE
-    for rows in range(1, len(labels)):
-        columns = [labels[k : k + rows] for k in range(0, len(labels), rows)]
-        if sum(_HANDLE + _LETTER * max(map(len, column)) for column in columns) <= room:
-            return rows, len(columns)
-    return len(labels), 1

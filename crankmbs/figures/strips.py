@@ -23,6 +23,7 @@ from crankmbs.figures.style import (
     whose,
 )
 from crankmbs.figures.view import View, over_time
+from crankmbs.measures.peaks import torque_of_rods
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.units import BAR, RPM
 
@@ -58,7 +59,10 @@ def speed_figure(view: View) -> Figure:
         mark_points(axes[0])
     _speed(axes[-1], *view.drawn(view.along, view.values("crank_speed")))
     crank_axis(axes[-1:], view)
-    footer(figure, view.result, "crank speed")
+    about = f"crank speed over the {view.window.kind}" + (
+        ", above over the whole run" if whole else ""
+    )
+    footer(figure, view.result, about, view.exactness("crank_speed"))
     return figure
 
 
@@ -78,19 +82,19 @@ def piston_motion_figure(view: View) -> Figure:
     crank_axis(axes, view)
     legend(figure, axes[0])
     figure.align_ylabels(axes)
-    footer(figure, view.result, "piston motion")
+    about = f"piston motion over the {view.window.kind}"
+    footer(figure, view.result, about, view.exactness(*(name for name, _, _ in rows)))
     return figure
 
 
 @rc_context(STYLE)
 def forces_figure(view: View) -> Figure:
     """Gas force, applied force and side force over the crank angle, those that there are."""
-    names = {"side_force": ("side force", "cylinder wall on\npiston, along Y")}
+    names = {"side_force": ("side force", "side force, wall\non piston, along Y")}
     if view.scene.force:
-        applied = "applied force", "applied to piston,\ntowards the crank"
-        names = {"applied_force": applied, **names}
+        names = {"applied_force": ("applied force", "applied force,\ntowards the crank"), **names}
     if view.scene.gas is not None:
-        names = {"gas_force": ("gas", "gas on piston,\ntowards the crank"), **names}
+        names = {"gas_force": ("gas force", "gas force,\ntowards the crank"), **names}
     figure, axes = panels(len(names), 1, 10.0, 3.5 * len(names))
     groups = one_curve_each(*map(view.values, names))
     for ax, (name, (_, label)) in zip(axes, names.items(), strict=True):
@@ -100,40 +104,42 @@ def forces_figure(view: View) -> Figure:
     crank_axis(axes, view)
     legend(figure, axes[0])
     figure.align_ylabels(axes)
-    footer(figure, view.result, " and ".join(word for word, _ in names.values()))
+    forces = " and ".join(force for force, _ in names.values())
+    footer(figure, view.result, f"{forces} over the {view.window.kind}", view.exactness(*names))
     return figure
 
 
 @rc_context(STYLE)
 def torque_figure(view: View) -> Figure:
-    """Torque of the rods on the crank, their sum, and the torque of drive and loads."""
+    """Gas and inertia torque of each cylinder and of all, and the torque of drive and loads."""
     figure, (ax,) = panels(1, 1, 10.0, 6.0)
     torque = view.values("crank_torque")
-    several = torque.shape[1] > 1
+    several, total = torque.shape[1] > 1, torque_of_rods(view.scene)
     degrees, drawn = view.drawn(view.along, torque)
     for group in one_curve_each(torque):
-        label = whose(group) if several else "rod on crank"
+        label = whose(group) if several else total
         width = 1.2 if several else 2.0
         ax.plot(degrees, drawn[:, group[0]], **line_of(group[0]), linewidth=width, label=label)
     if several:
-        ax.plot(degrees, drawn.sum(axis=1), color="black", linewidth=2.5, label="all rods")
+        ax.plot(degrees, drawn.sum(axis=1), color="black", linewidth=2.5, label=total)
     external = view.values("external_torque")
     _, drawn = view.drawn(view.along, external)
     ax.plot(degrees, drawn, color="0.45", linestyle=(0, (5, 2)), label=_cause(view, external))
-    ax.set_ylabel("torque, positive in the\nsense of rotation +theta [N m]")
+    ax.set_ylabel("torque on the crank, positive\nin the sense of +theta [N m]")
     crank_axis([ax], view)
     legend(figure, ax)
-    footer(figure, view.result, "torque on the crank")
+    exact = view.exactness("crank_torque", "external_torque")
+    footer(figure, view.result, f"torque on the crank over the {view.window.kind}", exact)
     return figure
 
 
 def _cause(view: View, external: Array) -> str:
-    """What the torque beside those of the rods is."""
+    """What the torque beside that of gas and inertia is."""
     if view.scene.motion is not None:
         return "drive torque that holds the speed"
     if np.min(external) >= 0.0:
-        return "drive"
-    return "load" if np.max(external) <= 0.0 else "drive and load"
+        return "drive torque"
+    return "load torque" if np.max(external) <= 0.0 else "load and drive torque"
 
 
 def _per_cylinder(ax: Axes, view: View, values: Array, groups: list[list[int]]) -> None:
@@ -176,12 +182,14 @@ def indicator_figure(view: View) -> Figure:
             axes[1].plot(volumes[end][:, k], pressure[:, k], **lines[k], label=label)
     axes[0].set_ylabel("gauge pressure [bar]")
     axes[1].set_ylabel("gauge pressure [bar]")
-    axes[1].set_xlabel("volume from top dead centre [cm$^3$]")
+    axes[1].set_xlabel("volume displaced from TDC [cm$^3$]")
     crank_axis(axes[:1], view)
     legend(figure, axes[0])
     if over_volume != over_angle:
         axes[1].legend()
-    footer(figure, view.result, "gas pressure and indicator diagram")
+    exact = view.exactness(*(name for name, _ in ends.values()), "piston_displacement")
+    about = f"gauge pressure and indicator diagram over the {view.window.kind}"
+    footer(figure, view.result, about, exact)
     return figure
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import math
 import textwrap
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
@@ -35,6 +35,7 @@ __all__ = [
     "grouped",
     "keep_flat",
     "legend",
+    "legend_grid",
     "line_of",
     "logarithmic",
     "mark_points",
@@ -56,7 +57,8 @@ FLAT = 1e-6  # of the mean: what varies less is drawn as constant
 _SAME = 1e-3  # of the range of a panel's curves: less than a pixel of it, a fifth of a line
 _SMALLER = 2  # points: text at the dead centres and of the caption, than the type of the figure
 _FAST = {"compress_level": 3}  # of a PNG: a third less time for a sixth more bytes
-_LINE = 1.27  # of its size: a line of it
+_LINE, _LETTER = 1.27, 0.55  # of its size: a line of text, and a letter's width, rather more
+_HANDLE = 5.0  # of the type's size: a line in a legend with its gaps
 
 STYLE: Any = {
     "figure.dpi": 150,
@@ -249,20 +251,43 @@ def legend(figure: Figure, *axes: Axes) -> None:
     pairs = [pair for ax in axes for pair in zip(*ax.get_legend_handles_labels(), strict=True)]
     if pairs:
         handles, labels = zip(*pairs, strict=True)
-        columns = min(len(handles), int(figure.get_figwidth() / 1.65))
+        columns = legend_grid(labels, figure)[1]
         figure.legend(handles, labels, loc="outside upper center", ncols=columns)
 
 
-def footer(figure: Figure, result: Result, about: str) -> None:
-    """Say under the figure which run it shows."""
-    lines = textwrap.wrap(result.scene.title, 80, max_lines=2, placeholder=" ...")
-    lines += textwrap.wrap(f"{about} ({result.formulation})", 100)
-    caption(figure, lines)
+def legend_grid(labels: Sequence[str], figure: Figure) -> tuple[int, int]:
+    """Rows and columns of a legend, filled column by column, that is no wider than its figure."""
+    room = figure.get_figwidth() * 72.0 / float(rcParams["legend.fontsize"])
+    for rows in range(1, len(labels)):
+        columns = [labels[k : k + rows] for k in range(0, len(labels), rows)]
+        if sum(_HANDLE + _LETTER * max(map(len, column)) for column in columns) <= room:
+            return rows, len(columns)
+    return len(labels), 1
 
 
-def caption(figure: Figure, lines: list[str]) -> None:
-    """Write lines under the figure as they are: in a title a $ is no formula."""
-    figure.supxlabel("\n".join(lines), fontsize=_small(), color="0.35", parse_math=False)
+def footer(figure: Figure, result: Result, about: str, exact: str = "") -> None:
+    """Say under the figure which run it shows, what of it, over what window, and how exact."""
+    by = ", by exudyn's rigid bodies" if result.formulation == "multibody" else ""
+    ending = f"; {exact}" if exact else ""
+    caption(figure, [result.scene.title, f"{about}{by}{ending}"])
+
+
+def caption(figure: Figure, lines: Iterable[str]) -> None:
+    """Write lines under the figure as they are, in a title a $ is no formula; what is wider than
+    the figure goes on below, on three lines at most."""
+    letters = int(figure.get_figwidth() * 72.0 / (_LETTER * _small()))
+    parts = [part for line in lines for part in _wrapped(line, letters)]
+    figure.supxlabel("\n".join(parts), fontsize=_small(), color="0.35", parse_math=False)
+
+
+def _wrapped(text: str, letters: int) -> list[str]:
+    """Text on as few lines as fit, of about one length."""
+    parts = textwrap.wrap(text, letters, max_lines=3, placeholder=" ...")
+    for width in range(len(text) // len(parts) if parts else letters, letters):
+        even = textwrap.wrap(text, width)
+        if len(even) == len(parts):
+            return even
+    return parts
 
 
 def one_curve_each(*panels: Array) -> list[list[int]]:

@@ -8,15 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from crankmbs.digits import error_digits
 from crankmbs.measures import Span, interp, last_span
 from crankmbs.measures.span import TURNS_BACK
 from crankmbs.mechanics.geometry import dead_centres
-from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.arrays import Array, Labelled
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["Plane", "View", "last_view", "over_time"]
+__all__ = ["Plane", "View", "exactness", "last_view", "over_time"]
 
 _SAME = 0.5  # deg: dead centres closer than this share one line
 _THERE = 1e-6  # deg: a cycle that begins so near to where the axis does is drawn in one piece
@@ -71,6 +72,10 @@ class View:
         """Forces of a name as complex numbers X + i Y, shape (n, how many)."""
         force = self.values(f"{name}_x") + 1j * self.values(f"{name}_y")
         return force.reshape(len(force), -1)
+
+    def exactness(self, *names: str) -> str:
+        """The numerical error of variables in words, as `exactness` has it."""
+        return exactness(self.result.variables, *names, first=self.window.first)
 
     def drawn(self, degrees: Array, values: Array) -> tuple[Array, Array]:
         """Values over crank angles of the cycle [deg], in its order, as a line shows them.
@@ -196,6 +201,23 @@ def last_view(result: Result) -> View:
         begun=begun,
         curves=curves,
     )
+
+
+def exactness(variables: Labelled, *names: str, first: int = 0) -> str:
+    """The largest numerical error of variables over the peak of each, in words; of a force named
+    without its axis the two components count together.
+
+    first : sample from which on they are drawn
+    """
+    shares = [0.0]
+    for name in names:
+        rows = [variables[each] for each in (name, f"{name}_x", f"{name}_y") if each in variables]
+        peak = max(float(np.max(np.abs(values[first:]))) for _, values, _ in rows)
+        if peak > 0.0:
+            shares.append(max(float(about["error_estimate"]) for *_, about in rows) / peak)
+    if not np.all(np.isfinite(shares)):
+        return "numerical error unknown"
+    return f"numerical error at most {error_digits(100.0 * max(shares))} % of the peak"
 
 
 def over_time(result: Result, first: int = 0) -> dict[str, Array]:
