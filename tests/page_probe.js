@@ -21,6 +21,7 @@
   const posed = (body, n) => {
     const scenes = given.scene.crank.inertia;
     const ratio = scenes > 0 ? asked.crank.inertia / scenes : 1;
+    shown.made.clear();
     stage.show(shown, { k, body, ratio, heavy: true });
     stage.pose(shown.angles[n]);
     return {
@@ -42,6 +43,7 @@
     lead: shown.leadAt(middle), ahead: shown.timeTo(middle),
     angle: shown.angleAt(shown.timeTo(middle) + 2 * shown.duration),
     curves: Object.fromEntries([...curves, "crank ahead of the mean"].map((name) => {
+      shown.made.clear(); // what it is drawn from is not there yet
       const drawn = page.quantities.drawn(name, shown, k);
       return [name, { ...drawn, now: drawn.of(shown.angles[100]) }];
     })),

@@ -29,14 +29,15 @@ SHOWN = {
     "cycle": [
         ("this.mean = (to - from) / this.duration", "this.mean = 1 / this.duration", "vee"),
         (
-            "this.samples[POINTS].crank_speed - this.samples[0]",
-            "this.samples[0].crank_speed - this.samples[0]",
+            "this.rows[POINTS].omega - this.rows[0]",
+            "this.rows[0].omega - this.rows[0]",
             "drifting",
         ),
         ("(this.drift * this.sense) / RPM", "this.drift * this.sense", "drifting"),
         ("shares, omega: mean, alpha: 0", "shares, omega: 1.01 * mean, alpha: 0", "vee"),
         ("shares, omega: mean, alpha: 0", "shares, omega: mean, alpha: 1e3", "vee"),
-        ("- from - mean * (v.time - begin)", "- from + mean * (v.time - begin)", "vee"),
+        ("- from - mean * (time - begin)", "- from + mean * (time - begin)", "vee"),
+        ("cylinderReactionsAt(train, row, k)", "cylinderReactionsAt(train, rows[0], k)", "row"),
         ("leads.map((each) => each - middle)", "leads", "vee"),
         ("angles[k - 1] + (angles[k]", "angles[k - 1] - (angles[k]", "vee"),
         ("(this.leads[k + 1] - this.leads[k])", "(this.leads[k] - this.leads[k + 1])", "vee"),

@@ -113,6 +113,15 @@ export function distinct(values, hair) {
   return sorted.filter((value, k) => k === 0 || value - sorted[k - 1] > hair);
 }
 
+/** A function that computes its answer to each argument once. */
+export function once(compute) {
+  const answers = new Map();
+  return (given) => {
+    if (!answers.has(given)) answers.set(given, compute(given));
+    return answers.get(given);
+  };
+}
+
 /** The function, which remembers its last answer and gives it again for the same arguments, or for
  * those of which `key` gives the same.
  *

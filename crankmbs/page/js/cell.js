@@ -1,6 +1,6 @@
 /** Gauss collocation in one cell of the crank angle: Newton's method on energies at its nodes. */
 import { eliminate } from "./arrays.js";
-import { torqueOf } from "./loads.js";
+import { isAffine, torqueOf } from "./loads.js";
 import { fillSystem, integralTo } from "./rule.js";
 import { givenAt, movingAt } from "./tables.js";
 
@@ -18,7 +18,7 @@ export class Stepper {
     for (const name of ["inertia", "given", "energy", "torque", "slowness", "rate", "drag"]) {
       this[name] = new Float64Array(s);
     }
-    this.right = new Float64Array(s);
+    this.right = new Float64Array(2 * s); // of the energies, and of a difference of them
     this.system = new Float64Array(s * s);
     this.work = this.spent = 0;
   }
@@ -41,7 +41,7 @@ export class Stepper {
 
   /** Solve the cell of a signed width from a motion's state on; whether that converges. */
   solve({ energy: begin, time, sense, branch }, width) {
-    const { rule, given, inertia, energy, slowness, torque } = this;
+    const { rule, given, inertia, energy, slowness, torque, drag } = this;
     const s = given.length;
     const first = sense * Math.sqrt((2 * begin) / inertia[0]);
     const load = torqueOf(branch, time, first);
@@ -49,15 +49,16 @@ export class Stepper {
       energy[j] = begin;
       for (let i = 0; i < s; i++) energy[j] += width * rule.matrix[j * s + i] * (given[i] + load);
     }
+    const affine = isAffine(branch) && drag.every((each) => each === 0); // one step is exact
     let change = Infinity;
     for (let n = 0; n < NEWTON; n++) {
       const before = change;
       this.evaluate(branch, time, sense, width);
       change = this.correct(begin, width);
       if (!(change < Infinity)) return false;
-      if (change <= SETTLED || (change < GOOD && change > 0.5 * before)) break;
+      if (affine || change <= SETTLED || (change < GOOD && change > 0.5 * before)) break;
     }
-    if (!(change < GOOD)) return false;
+    if (!(affine || change < GOOD)) return false;
     this.evaluate(branch, time, sense, width);
     this.work = this.spent = 0;
     for (let j = 0; j < s; j++) {
@@ -85,35 +86,35 @@ export class Stepper {
     }
   }
 
-  /** One step of Newton's method; the relative change of the energies. */
+  /** One step of Newton's method, and by what a difference of the energy at the cell's begin grows
+   * up to its nodes; the relative change of the energies. */
   correct(begin, width) {
     const { rule, energy, torque, rate, right, system } = this;
     const s = energy.length;
     fillSystem(system, rule, width, rate);
     for (let j = 0; j < s; j++) {
-      right[j] = begin;
+      right[2 * j] = begin;
+      right[2 * j + 1] = 1;
       for (let i = 0; i < s; i++) {
-        right[j] += width * rule.matrix[j * s + i] * (torque[i] - rate[i] * energy[i]);
+        right[2 * j] += width * rule.matrix[j * s + i] * (torque[i] - rate[i] * energy[i]);
       }
     }
-    eliminate(system, right, s, 1);
+    eliminate(system, right, s, 2);
     let change = 0;
     for (let j = 0; j < s; j++) {
-      change += Math.abs(right[j] / energy[j] - 1);
-      energy[j] = right[j];
+      change += Math.abs(right[2 * j] / energy[j] - 1);
+      energy[j] = right[2 * j];
     }
     return change;
   }
 
   /** By what part a small difference of the energy grows in the solved cell. */
   growth(width) {
-    const { rule, rate, right, system } = this;
-    const s = rate.length;
-    fillSystem(system, rule, width, rate);
-    right.fill(1);
-    eliminate(system, right, s, 1);
+    const { rule, rate, right } = this;
     let grown = 0;
-    for (let j = 0; j < s; j++) grown += width * rule.weights[j] * rate[j] * right[j];
+    for (let j = 0; j < rate.length; j++) {
+      grown += width * rule.weights[j] * rate[j] * right[2 * j + 1];
+    }
     return grown;
   }
 

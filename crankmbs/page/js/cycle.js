@@ -3,7 +3,7 @@ import { countUpTo } from "./arrays.js";
 import { filled } from "./format.js";
 import { LECTURES, cylinderLectured, lecturedAt } from "./lecture.js";
 import { measuredSpan, measuresOf } from "./measures.js";
-import { reactionsAt } from "./reactions.js";
+import { cylinderReactionsAt, reactionsAt } from "./reactions.js";
 import { Refused } from "./refused.js";
 
 const POINTS = 360; // intervals of a curve
@@ -42,15 +42,31 @@ class Cycle {
     this.sense = Math.sign(to - from);
     this.angles = Array.from({ length: POINTS + 1 }, (_, k) => from + ((to - from) * k) / POINTS);
     this.rows = this.angles.map((theta) => motion.at(theta));
-    this.samples = this.rows.map((row) => reactionsAt(this.train, row));
-    this.times = this.samples.map(({ time }) => time);
+    this.made = new Map(); // samples, all or of a cylinder alone
+    this.times = this.rows.map(({ time }) => time);
     this.begin = this.times[0];
     this.duration = this.times[POINTS] - this.begin;
     this.mean = (to - from) / this.duration;
-    this.drift = this.samples[POINTS].crank_speed - this.samples[0].crank_speed;
+    this.drift = this.rows[POINTS].omega - this.rows[0].omega;
     this.energy = motion.path?.cells[0]?.energy;
     this.answers = new Map();
     this.leads = leadsOf(this);
+  }
+
+  /** All variables at the samples. */
+  get samples() {
+    return this.samplesOf(null);
+  }
+
+  /** Those of the motion and of cylinder k alone, from 0; null: all. */
+  samplesOf(k) {
+    const { train, rows, made } = this;
+    if (made.has(null)) return made.get(null);
+    if (!made.has(k)) {
+      made.set(k, rows.map((row) =>
+        (k === null ? reactionsAt(train, row) : cylinderReactionsAt(train, row, k))));
+    }
+    return made.get(k);
   }
 
   get settled() {
@@ -64,7 +80,7 @@ class Cycle {
   /** The fastest less the slowest speed, of the mean. */
   get fluctuation() {
     if (this.measures) return this.measures.fluctuation;
-    const speeds = this.samples.map((v) => v.crank_speed);
+    const speeds = this.rows.map(({ omega }) => omega);
     return (Math.max(...speeds) - Math.min(...speeds)) / Math.abs(this.mean);
   }
 
@@ -131,8 +147,8 @@ class Cycle {
 }
 
 /** By how much the crank is ahead at the samples [rad], on average over the cycle not at all. */
-function leadsOf({ samples, angles, from, mean, begin }) {
-  const leads = samples.map((v, k) => angles[k] - from - mean * (v.time - begin));
+function leadsOf({ times, angles, from, mean, begin }) {
+  const leads = times.map((time, k) => angles[k] - from - mean * (time - begin));
   const middle = leads.slice(1).reduce((sum, each) => sum + each, 0) / (leads.length - 1);
   return leads.map((each) => each - middle);
 }

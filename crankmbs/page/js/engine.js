@@ -217,8 +217,10 @@ class Prescribed {
     const found = [{ theta: this.from, shares: firing.shares }];
     if (train.fuel === null) return found;
     for (const theta of this.smoothBetween(this.from, this.to).slice(1)) {
-      const time = this.law.timeAt(theta);
-      firing.pass(time, theta, this.law.at(time)[1], sense);
+      firing.pass(theta, sense, () => {
+        const time = this.law.timeAt(theta);
+        return [time, this.law.at(time)[1]];
+      });
       found.push({ theta, shares: firing.shares });
     }
     return found;

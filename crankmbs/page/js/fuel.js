@@ -26,15 +26,15 @@ export class Firing {
     if (fuel !== null) this.decide(0, start.speed, cylinders.map(() => 1));
   }
 
-  /** Decide at a crank angle, for the cylinders that do so there. */
-  pass(time, theta, omega, sense) {
+  /** Decide at a crank angle, for the cylinders that do so there; state : gives time and speed. */
+  pass(theta, sense, state) {
     if (this.fuel === null || Math.abs(theta - this.start.angle) <= SAME) return;
     const cycles = this.cylinders.map(({ phase }) => {
       const turns = (theta + phase - Math.PI) / this.period;
       const apart = Math.abs(turns - Math.round(turns)) * this.period;
       return apart < 2 * SAME ? this.cycleOf(phase, Math.round(turns), sense) : 0;
     });
-    if (cycles.some((cycle) => cycle > 0)) this.decide(time, omega, cycles);
+    if (cycles.some((cycle) => cycle > 0)) this.decide(...state(), cycles);
   }
 
   /** How many firing dead centres the cycle that is decided and those since the start hold. */

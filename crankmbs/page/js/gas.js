@@ -7,7 +7,7 @@
  * within each stroke between the true dead centres, at the same compression ratio; a diagram of
  * polytropes is one of the volume already.
  */
-import { distinct } from "./arrays.js";
+import { countUpTo, distinct, once } from "./arrays.js";
 import { joined, knotsOver, valueAt } from "./cubics.js";
 import {
   Loop, bottomPosition, deadCentres, strokeOf, throwAngles, topPosition,
@@ -32,23 +32,23 @@ const BETWEEN = [0.1, 0.5, 0.9]; // where a cubic through the support errs most
 export function pressuresOf(gas, shape, share, closeness = DIAGRAM) {
   if (gas === null) return { pressure: [], combustion: [], crank_end: [] };
   if (gas.shape === null || isShape(shape, gas.shape)) return gas;
-  const once = new Map();
   const close = { ...gas, closeness };
-  const cycle = (number) => {
-    if (!once.has(number)) once.set(number, cycleOf(close, gas.sources[number], shape));
-    return once.get(number);
-  };
-  const fired = gas.fired.map(cycle);
-  const crankEnd = gas.below.map(cycle);
-  const net = (head, k) => (crankEnd.length ? netOf(head, crankEnd[k], share) : head);
-  const ends = { crank_end: crankEnd };
-  if (gas.motored === null) return { pressure: fired.map(net), combustion: [], ...ends };
-  const both = gas.motored.map((number, k) => {
-    const motored = cycleOf(close, gas.sources[number], shape, fired[k]);
-    return combustionOf(net(fired[k], k), net(motored, k));
+  const cycle = once((number) => cycleOf(close, gas.sources[number], shape));
+  // cylinders of the same sources share what is made of them
+  const made = once((sources) => {
+    const [fired, motored, below] = JSON.parse(sources);
+    const net = (head) => (below === null ? head : netOf(head, cycle(below), share));
+    const head = cycle(fired);
+    if (motored === null) return { pressure: net(head) };
+    return combustionOf(net(head), net(cycleOf(close, gas.sources[motored], shape, head)));
   });
-  const [pressure, combustion] = [0, 1].map((n) => both.map((each) => each[n]));
-  return { pressure, combustion, ...ends };
+  const all = gas.fired.map((fired, k) =>
+    made(JSON.stringify([fired, gas.motored?.[k] ?? null, gas.below[k] ?? null])));
+  return {
+    pressure: all.map(({ pressure }) => pressure),
+    combustion: gas.motored === null ? [] : all.map(({ combustion }) => combustion),
+    crank_end: gas.below.map(cycle),
+  };
 }
 
 /** Whether one shape is another. */
@@ -205,27 +205,31 @@ function continued(gas, source, shape, fired) {
   const length = Math.PI - source.closes;
   const period = fired.knots[fired.knots.length - 1] - fired.knots[0];
   const knots = [];
-  const cubics = [];
+  const parts = [];
   for (let at = first; at < first + period - 1e-6; at += gas.period) {
     const pressed = valueAt(fired, at) + gas.ambient;
     const size = volume(at);
     const rows = knotsBetween(fired, at, at + length);
     const pressure = (phi) => pressed * Math.pow(size / volume(phi), source.polytrope);
     const part = fitted(gas.closeness, at, at + length, pressure, rows);
-    knots.push(...part.lefts);
-    cubics.push(...part.cubics.map(([a, b, c, d]) => [a, b, c, d - gas.ambient]));
-    const rest = knotsBetween(fired, at + length, at + gas.period);
-    knots.push(...rest.slice(0, -1));
-    cubics.push(...cubicsOn(fired, rest));
+    parts.push({ ...part, begin: knots.length });
+    knots.push(...part.lefts, ...knotsBetween(fired, at + length, at + gas.period).slice(0, -1));
   }
   knots.push(first + period);
-  return { knots: Float64Array.from(knots), coefficients: flat(cubics) };
+  const found = cycleOn(fired, Float64Array.from(knots));
+  for (const { begin, cubics } of parts) {
+    cubics.forEach((cubic, k) => cubic.forEach((c, power) => {
+      const to = power * (knots.length - 1) + begin + k;
+      found.coefficients[to] = power === 3 ? c - gas.ambient : c;
+    }));
+  }
+  return found;
 }
 
 /** The pressure without combustion, and what combustion adds to it, on the same knots. */
 function combustionOf(fired, motored) {
-  const more = netOf(fired, motored, 1);
-  return [{ knots: more.knots, coefficients: flat(cubicsOn(motored, more.knots)) }, more];
+  const combustion = netOf(fired, motored, 1);
+  return { pressure: cycleOn(motored, combustion.knots), combustion };
 }
 
 /** A cycle less a share of another, on the knots of both over their least common period. */
@@ -238,10 +242,9 @@ function netOf(one, other, share) {
   const inside = (cycle) => knotsOver(cycle, first, last - first).map((each) => first + each);
   const marks = distinct([first, ...inside(one), ...inside(other)], KNOT);
   const knots = Float64Array.from([...marks.filter((each) => each < last - KNOT), last]);
-  const less = cubicsOn(other, knots);
-  const cubics = cubicsOn(one, knots).map((cubic, k) =>
-    cubic.map((c, j) => c - share * less[k][j]));
-  return { knots, coefficients: flat(cubics) };
+  const { coefficients: less } = cycleOn(other, knots);
+  const coefficients = cycleOn(one, knots).coefficients.map((c, k) => c - share * less[k]);
+  return { knots, coefficients };
 }
 
 function knotsBetween(cycle, low, high) {
@@ -251,24 +254,22 @@ function knotsBetween(cycle, low, high) {
   return [low, ...distinct(kept, 0), high];
 }
 
-/** The cubics of a cycle behind other knots, between each two of which lies one piece. */
-function cubicsOn(cycle, knots) {
-  const { knots: own, coefficients } = cycle;
+/** A cycle with other knots, between each two of which lies one piece. */
+function cycleOn({ knots: own, coefficients: of }, knots) {
   const n = own.length - 1;
+  const m = knots.length - 1;
   const period = own[n] - own[0];
-  const found = [];
-  for (let k = 0; k + 1 < knots.length; k++) {
+  const coefficients = new Float64Array(4 * m);
+  for (let k = 0; k < m; k++) {
     const middle = 0.5 * (knots[k] + knots[k + 1]);
     const within = middle - Math.floor((middle - own[0]) / period) * period;
-    let piece = n - 1;
-    while (piece > 0 && own[piece] > within) piece--;
+    const piece = countUpTo(own, within, 1, n) - 1;
     const x = within - own[piece] - (middle - knots[k]);
-    const [a, b, c, d] = [0, 1, 2, 3].map((power) => coefficients[power * n + piece]);
-    found.push([a, b + 3 * a * x, c + (2 * b + 3 * a * x) * x, d + (c + (b + a * x) * x) * x]);
+    const [a, b, c, d] = [of[piece], of[n + piece], of[2 * n + piece], of[3 * n + piece]];
+    coefficients[k] = a;
+    coefficients[m + k] = b + 3 * a * x;
+    coefficients[2 * m + k] = c + (2 * b + 3 * a * x) * x;
+    coefficients[3 * m + k] = d + (c + (b + a * x) * x) * x;
   }
-  return found;
-}
-
-function flat(cubics) {
-  return Float64Array.from([0, 1, 2, 3].flatMap((power) => cubics.map((cubic) => cubic[power])));
+  return { knots, coefficients };
 }

@@ -88,9 +88,9 @@ export class Travel {
   }
 
   decide() {
-    const { inertia } = reduceAt(this.train, this.theta);
-    const omega = this.sense * Math.sqrt((2 * this.energy) / inertia);
-    this.firing.pass(this.time, this.theta, omega, this.sense);
+    const { train, theta, sense, energy, time } = this;
+    this.firing.pass(theta, sense, () =>
+      [time, sense * Math.sqrt((2 * energy) / reduceAt(train, theta).inertia)]);
   }
 
   /** To an angle, or the first kink on the way; number : of the cell, if it is a whole one. */

@@ -192,8 +192,7 @@ class Page {
   refine() {
     const { cycle, given: { endings } } = this;
     const better = cycleOf(this.careful, cycle.scene, endings, { fine: true, warm: cycle });
-    const apart = better.samples.map((v, k) =>
-      Math.abs(v.crank_speed - cycle.samples[k].crank_speed));
+    const apart = better.rows.map(({ omega }, k) => Math.abs(omega - cycle.rows[k].omega));
     this.error = Math.max(...apart) / Math.abs(better.mean);
     this.cycle = better;
     this.redraw();

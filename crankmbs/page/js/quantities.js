@@ -9,9 +9,12 @@ const LECTURE = "S1 (motion and forces truncated)";
 /** The three curves of a quantity, by what made them. */
 export const CURVES = ["simulated", "exact formula", "lecture"];
 
-/** Quantities by name: unit, its SI value, `of` a sample and a cylinder; `said` by the formulas. */
+/** Quantities by name: unit, its SI value, `of` a sample and a cylinder; `said` by the formulas;
+ * cylinder : whether the variables of the motion and one cylinder are enough. */
 const QUANTITIES = {
-  "crank speed": { unit: "rpm", si: RPM, of: (v) => v.crank_speed, even: (c) => c.mean },
+  "crank speed": {
+    unit: "rpm", si: RPM, cylinder: true, of: (v) => v.crank_speed, even: (c) => c.mean,
+  },
   "crank ahead of the mean": { unit: "°", si: DEGREE, ahead: true, even: () => 0 },
   "turning moment": {
     unit: "N m",
@@ -131,7 +134,9 @@ function read(quantity, cycle, theta, k) {
 }
 
 function curvesOf(quantity, cycle, k) {
-  const run = quantity.ahead ? cycle.leads : cycle.samples.map((v) => quantity.of(v, k));
+  const run = quantity.ahead
+    ? cycle.leads
+    : cycle.samplesOf(quantity.cylinder ? k : null).map((v) => quantity.of(v, k));
   const found = [{ name: CURVES[0], y: run }];
   if (quantity.even) found.push({ name: "constant speed", y: run.map(() => quantity.even(cycle)) });
   if (!quantity.said) return found;

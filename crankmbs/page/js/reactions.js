@@ -13,9 +13,8 @@ import { gravityVector, rodCentre } from "./tables.js";
 /** All variables at one sample { time, theta, omega, alpha, external_torque, shares }: numbers, and
  * under `cylinders` an object of numbers for each. */
 export function reactionsAt(train, sample) {
-  const { theta, omega, alpha } = sample;
   const cylinders = train.cylinders.map((_, k) => cylinderAt(train, sample, k));
-  const found = crankAt(train, theta, omega, alpha, cylinders);
+  const found = crankAt(train, sample, cylinders);
   let journal = 0;
   for (const { variables } of cylinders) {
     journal += variables.crank_torque;
@@ -23,14 +22,23 @@ export function reactionsAt(train, sample) {
     variables.pin_torque = journal - 0.5 * variables.crank_torque;
   }
   return {
-    time: sample.time,
-    crank_angle: theta,
-    crank_speed: omega,
-    crank_acceleration: alpha,
+    ...motionAt(sample),
     ...found,
     external_torque: sample.external_torque ?? found.external_torque,
     cylinders: cylinders.map((each) => each.variables),
   };
+}
+
+/** Those of the motion and of one cylinder alone, from number 0, without the torques in its crank's
+ * journals. */
+export function cylinderReactionsAt(train, sample, number) {
+  const cylinders = [];
+  cylinders[number] = cylinderAt(train, sample, number).variables;
+  return { ...motionAt(sample), cylinders };
+}
+
+function motionAt({ time, theta, omega, alpha }) {
+  return { time, crank_angle: theta, crank_speed: omega, crank_acceleration: alpha };
 }
 
 /** The variables of one cylinder, and what it adds to the balance of crank and frame. */
@@ -104,11 +112,12 @@ export function pressureAt({ pressure, combustion }, shares, number, phi) {
 
 /** A vector from a cylinder's frame in the engine's. */
 function turned(bank, x, y) {
+  if (bank === 0) return [x, y];
   const [cos, sin] = [Math.cos(bank), Math.sin(bank)];
   return [cos * x - sin * y, sin * x + cos * y];
 }
 
-function crankAt({ crank, gravity, levers }, theta, omega, alpha, cylinders) {
+function crankAt({ crank, gravity, levers }, { theta, omega, alpha }, cylinders) {
   const square = omega * omega;
   const first = crank.mass * crank.center_of_mass;
   const [sin, cos] = [Math.sin(theta), Math.cos(theta)];

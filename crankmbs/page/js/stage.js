@@ -36,7 +36,7 @@ export class Stage {
     this.sizes = proportions(train, ratio, this.compression);
     this.measure(cycle, body, k);
     [this.lean] = onScreen(turnedBy(train.cylinders[k].bank, 1, 0));
-    this.most = Math.max(...cycle.samples.map((v) => v.cylinders[k].gas_pressure), 1);
+    this.most = Math.max(...cycle.samplesOf(k).map((v) => v.cylinders[k].gas_pressure), 1);
     const lead = Math.max(...cycle.leads.map(Math.abs));
     this.magnified = lead > 1e-9 ? Math.max(roundBelow(LEAD / lead), 1) : 0;
     const made = JSON.stringify([k, train.cylinders, heavy, this.magnified > 0]);
@@ -53,7 +53,7 @@ export class Stage {
   measure(cycle, body, k) {
     [this.largest, this.letters] = [0, 0];
     if (!BODIES.includes(body)) return;
-    for (const v of cycle.samples) {
+    for (const v of cycle.samplesOf(body === "crank" ? null : k)) {
       for (const { name, force } of forcesOn(body, this.train, v, k)) {
         this.largest = Math.max(this.largest, Math.hypot(...force));
         this.letters = Math.max(this.letters, name.length);

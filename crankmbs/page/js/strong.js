@@ -2,17 +2,14 @@
  *
  * Cells of a quick pass go over all others, of which a table with a row a degree has hundreds.
  */
+import { once } from "./arrays.js";
 
 const BEND = 0.1; // rad: as wide as a cell
 const STRONG = 0.02; // of the range of a cycle
 
 /** Cycles of the same periods with their strong knots alone, or one; what was one stays one. */
 export function strongOf(cycles) {
-  const once = new Map();
-  return cycles.map((cycle) => {
-    if (!once.has(cycle)) once.set(cycle, atStrongKnots(cycle));
-    return once.get(cycle);
-  });
+  return cycles.map(once(atStrongKnots));
 }
 
 function atStrongKnots({ knots, coefficients }) {

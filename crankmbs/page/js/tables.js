@@ -15,18 +15,20 @@ import { nodesBetween } from "./rule.js";
 
 const WIDEST = (6 * Math.PI) / 180;
 const SLIVER = 1e-12; // rad: two edges closer than this are one
+const NOTHING = []; // thousands of nodes share it
+const WEIGHTLESS = [0, 0];
 
 /** Gravity [m/s2] in the frame of a cylinder at this bank [rad]. */
 export function gravityVector(gravity, bank) {
-  if (gravity === null) return [0, 0];
+  if (gravity === null) return WEIGHTLESS;
   const angle = gravity.angle - bank;
   return [gravity.acceleration * Math.cos(angle), gravity.acceleration * Math.sin(angle)];
 }
 
 /** The crank train at one crank angle [rad]: inertia J [kg m2] with the crank's, slope dJ/dtheta,
  * torque of gas, weights and forces on the pistons [N m], what the combustion of each cylinder adds
- * to it, and of friction the torque of each cylinder's gas, what rings oppose to either sense of
- * rotation without it [N m], and drag, torque per speed [N m s/rad]. */
+ * to it, and of friction the torque of each cylinder's gas where that presses rings, what rings
+ * oppose to either sense of rotation without it [N m], and drag, torque per speed [N m s/rad]. */
 export function reduceAt(train, theta) {
   const of = movingAt(train, theta);
   of.inertia += train.crank.inertia;
@@ -37,7 +39,8 @@ export function reduceAt(train, theta) {
 export function movingAt(train, theta) {
   const { crank, gears, cylinders, gravity, pressure, combustion } = train;
   const force = train.friction?.ring_force ?? 0;
-  const [gas, burning] = [[], []];
+  const gas = train.friction?.ring_pressure && pressure.length ? [] : NOTHING;
+  const burning = combustion.length ? [] : NOTHING;
   let [inertia, slope, rings, drag] = [0, 0, 0, 0];
   let torque = crankWeight(crank, gravity, theta);
   for (let k = 0; k < cylinders.length; k++) {
@@ -53,8 +56,9 @@ export function movingAt(train, theta) {
       const [ax, ay] = gravityVector(gravity, cylinders[k].bank);
       torque += piston.mass * ax * at.x1 + rod.mass * (ax * g.x1 + ay * g.y1);
     }
-    if (pressure.length) gas.push(-piston.area * valueAt(pressure[k], phi) * at.x1);
-    torque += gas[k] ?? 0;
+    const pressed = pressure.length ? -piston.area * valueAt(pressure[k], phi) * at.x1 : 0;
+    torque += pressed;
+    if (gas !== NOTHING) gas.push(pressed);
     const { steady, jumping } = appliedAt(gears[k], at);
     torque -= at.x1 * steady;
     rings += Math.abs(at.x1) * (force + jumping);
@@ -74,6 +78,7 @@ export function givenAt({ friction, loads }, of, { shares, phases, sense }, omeg
 
 /** Torque of the crank's own weight at a crank angle [N m]. */
 function crankWeight(crank, gravity, theta) {
+  if (gravity === null) return 0;
   const [gx, gy] = gravityVector(gravity, 0);
   const first = crank.mass * crank.center_of_mass;
   return first * (gy * Math.cos(theta) - gx * Math.sin(theta));
@@ -144,7 +149,11 @@ function nearFolds({ radius, length, offset }, { phase }, period) {
 export function nodeMaker() {
   const angles = remembering(nodesBetween);
   const nodes = remembering(
-    (at, train) => Array.from(at, (theta) => movingAt(train, theta)),
+    (at, train) => {
+      const found = new Array(at.length);
+      for (let k = 0; k < at.length; k++) found[k] = movingAt(train, at[k]);
+      return found;
+    },
     (at, { crank, gears, cylinders, gravity, friction, pressure, combustion }) => {
       const parts = gears.map(({ shape, rod, piston, drag, applied }) => [
         shape, rod.mass, rod.center_of_mass, rod.inertia, piston.mass, piston.area, drag, applied,

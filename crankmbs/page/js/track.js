@@ -26,6 +26,10 @@ export class Track {
     this.to(this.begin);
   }
 
+  samplesOf() {
+    return this.samples;
+  }
+
   /** Go to a time [s]: the motion there. */
   to(time) {
     this.pressures = this.pressuresAt(time);

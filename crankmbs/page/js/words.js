@@ -7,7 +7,7 @@ const RPM = Math.PI / 30;
  * does not have stands as ... in its place. */
 export function numbersOf(cycle) {
   const { measures, train } = cycle;
-  const { external_torque: outside } = measures ?? cycle.samples[0];
+  const { external_torque: outside } = measures ?? cycle.rows[0];
   const drives = cycle.prescribed || outside * cycle.mean > 0;
   const shown = (of, si, decimals, unit) =>
     (measures ? `${readable(of(measures) / si, decimals)} ${unit}` : "…");
