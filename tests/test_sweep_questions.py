@@ -18,8 +18,8 @@ from crankmbs import (
     load_scene,
     minimize,
     sensitivity,
-    sobol_indices,
     simulate,
+    sobol_indices,
     solve,
     sweep,
 )
