@@ -27,11 +27,15 @@ from crankmbs import (
     load_scene,
     simulate,
 )
+from crankmbs.choose import choose
 from crankmbs.mechanics.train import crank_train
 from crankmbs.motion import events as kept
 from crankmbs.motion.account import Rows, beside
 from crankmbs.motion.base import State
+from crankmbs.report.machine import describe
+from crankmbs.result.event_words import event_words
 from crankmbs.scene.parts import Friction
+from crankmbs.scene.write import scene_files
 
 HEAVY = {"piston": Piston(mass=2.0), "rod": Rod(length=0.14, mass=1.0)}
 
@@ -72,6 +76,22 @@ def test_loads_on_and_off_by_closed_form(formulation):
     assert events["text"].values[1] == "torque[1], constant, ends at 190.986 rpm"
     assert events["text"].values[2] == "torque[2], constant, sets in at 1.55 s"
     assert max(events[name].error_estimate for name in ("time", "crank_angle")) < 1e-9
+
+
+def test_a_load_is_called_by_its_name(tmp_path):
+    """In the file, a saved result, the events, what `check` prints and the figure's words."""
+    scene = STARTER.with_(torque__1__name="starter", run__until="1 s")
+    for name, text in scene_files(scene, "named").items():
+        (tmp_path / name).write_text(text)
+    written = load_scene(tmp_path / "named.toml")
+    assert written.torque[0].name == "starter"
+    assert "starter, constant, +10 N m" in describe("named", written, choose(written))
+    result = simulate(written)
+    for each in (result, Result.load(result.save(tmp_path))):
+        assert each.events["text"].values[1] == "torque[1], starter, ends at 190.986 rpm"
+        assert event_words(each) == ["starter on", "starter off"]
+    with pytest.raises(InputError, match="torque__1__name: must be a str"):
+        STARTER.with_(torque__1__name=3)
 
 
 @pytest.mark.parametrize("formulation", FREE)

@@ -194,8 +194,14 @@ def test_the_command(tmp_path, monkeypatch):
     written = simulate(load_scene("heavy.toml").with_(run__until="settled"))
     assert measure(written).fluctuation.value == pytest.approx(0.01, rel=1e-5)
     assert re.search(r"inertia of crank and flywheel \[kg m\^2\] +0\.439724", shown.output)
+    present = r"the same with the scene's 0\.15 kg m\^2 \[1\] +0\.0273589"
+    assert re.search(present, shown.output)
     assert re.search(r"the formula is off by \[%\] +0\.0878", shown.output)
     balanced = crankmbs_("flywheel", "yi_diesel", "--no-figures", "-o", "free.toml")
+    free = (tmp_path / "free.toml").read_text(encoding="utf-8")
+    for line in ('radius = "46 mm"', 'ambient = "1 kgf/cm^2"', 'torque = "-21.8274261 N m"'):
+        assert line in free.splitlines()
+    assert ("[motion]" in free, 'until = "1 cycle"' in free) == (False, True)
     run = simulate(load_scene("free.toml"))
     assert measure(run).fluctuation.value == pytest.approx(0.01, rel=1e-5)
     assert "a constant -21.8274 N m balances gas and gravity" in balanced.output

@@ -64,6 +64,37 @@ def test_a_crank_that_stands_on_one_line_is_written_anew(tmp_path):
     assert load_scene(tmp_path / "b.toml").crank.inertia == 0.2
 
 
+START = {"angle": "0 deg", "speed": "3200 rpm"}
+
+
+def test_a_prescribed_speed_is_set_free_in_place(tmp_path):
+    path, crank = SHIPPED["grega_lecture"], {"inertia": "0.2 kg m^2"}
+    target = tmp_path / "b.toml"
+    files = edited_files(path, target, crank, "", start=START, torque="-90 N m")
+    text = files["b.toml"].decode()
+    (tmp_path / "b.toml").write_text(text)
+    free, prescribed = load_scene(tmp_path / "b.toml"), load_scene(path)
+    assert (free.motion, len(free.torque), free.torque[0].torque) == (None, 1, -90.0)
+    assert (free.gas, free.run, free.rod) == (prescribed.gas, prescribed.run, prescribed.rod)
+    source = path.read_text(encoding="utf-8").splitlines()
+    gone = [line for line in source if line not in text.splitlines()]
+    assert all(line.startswith(("inertia", "[motion]", "speed", "angle")) for line in gone)
+    start = text.splitlines().index("[start]")
+    assert text.splitlines()[start + 1 : start + 3] == ['angle = "0 deg"', 'speed = "3200 rpm"']
+
+
+def test_a_speed_on_one_line_is_written_anew(tmp_path):
+    scene = tmp_path / "a.toml"
+    source = SHIPPED["grega_lecture"].read_text(encoding="utf-8")
+    before, _, rest = source.partition("[motion]\n")
+    scene.write_text(f'motion = {{ speed = "3000 rpm" }}\n{before}{rest.partition("[")[1]}run]\n')
+    scene.write_text(scene.read_text() + 'until = "1 cycle"\n')
+    files = edited_files(scene, tmp_path / "b.toml", {}, start=START)
+    (tmp_path / "b.toml").write_bytes(files["b.toml"])
+    free = load_scene(tmp_path / "b.toml")
+    assert (free.motion, free.torque) == (None, ())
+
+
 def test_values_that_no_crank_has_are_refused(tmp_path):
     with pytest.raises(InputError, match="crank__inertia"):
         edited_files(SHIPPED["coasting"], tmp_path / "b.toml", {"inertia": "-1 kg m^2"})

@@ -104,11 +104,39 @@ def test_a_jump_and_a_closing_row_come_back(tmp_path):
 def test_a_written_scene_reads_well():
     text = scene_files(load_scene("yi_diesel_free"), "mine")["mine.toml"]
     for line in (
-        'radius = "0.046 m"',
+        'radius = "46 mm"',
+        'length = "153.333333333 mm"',
+        'area = "57.079 cm^2"',
+        'offset = "1.2972 mm"',
+        'ambient = "1 kgf/cm^2"',
         "firing_order = [1, 3, 4, 2]",
         'pressure = "mine_pressure.csv"',
         'speed = "3200 rpm"',
-        'until = "20 cycle"',
+        'until = "20 cycles"',
     ):
         assert line in text.splitlines()
     assert "stroke" not in text  # at its default
+
+
+@pytest.mark.parametrize(
+    ("value", "line"),
+    [
+        ({"crank__radius": 0.1 + 0.2, "rod__length": 1.0}, 'radius = "300.00000000000006 mm"'),
+        ({"crank__radius": 0.045}, 'radius = "45 mm"'),
+        ({"run__until": "10 rev"}, 'until = "10 rev"'),
+        ({"run__until": "15 deg"}, 'until = "15 deg"'),
+        ({"run__until": "1 cycle"}, 'until = "1 cycle"'),
+        ({"gas__ambient": "14.7 psi"}, 'ambient = "14.7 psi"'),
+        ({"gas__ambient": "0.95 bar"}, 'ambient = "0.95 bar"'),
+        ({"start__angle": "-0.1 deg"}, 'angle = "-0.1 deg"'),
+        ({"crank__inertia": "12345.6 kg cm^2"}, 'inertia = "1.23456 kg m^2"'),
+        ({"crank__inertia": "120.7 lb in^2"}, 'inertia = "120.7 lb in^2"'),
+        ({"torque__1__coefficient": "9e-6 N m/rpm^2"}, 'coefficient = "9e-06 N m/rpm^2"'),
+        ({"start__angle": "0.3 rad"}, 'angle = "0.3 rad"'),
+        ({"start__speed": "333 rad/s"}, 'speed = "333 rad/s"'),
+    ],
+)
+def test_a_number_has_the_fewest_digits_that_read_as_it(value, line, tmp_path):
+    scene = (DRIVEN if "gas__ambient" in value else FREE).with_(**value)
+    assert line in scene_files(scene, "mine")["mine.toml"].splitlines()
+    assert without_source(again(scene, tmp_path)) == without_source(scene)

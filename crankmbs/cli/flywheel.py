@@ -16,11 +16,12 @@ from crankmbs.cli.progress import progress
 from crankmbs.cli.text import heading, table
 from crankmbs.digits import digits, error_digits
 from crankmbs.errors import InputError, shown
-from crankmbs.scene.units import RPM
+from crankmbs.scene.units import DEGREE, RPM
 from crankmbs.storage.files import together
 
 if TYPE_CHECKING:
     from crankmbs.design.flywheel import Flywheel
+    from crankmbs.measures import Measures
     from crankmbs.scene.scene import Scene
 
 __all__ = ["flywheel"]
@@ -61,10 +62,12 @@ def flywheel(
     folder = None if no_figures else results_folder(path, out)
     with progress("sizing"):
         wheel = sized(machine, number)
-    lines = [_report(path.stem, machine, wheel)]
+    with progress("before"):
+        before = _before(machine) if wheel.status == 0 else None
+    lines = [_report(path.stem, machine, wheel, before)]
     if wheel.status == 0:
         with progress("loads"):
-            lines += ["", loads, ""] if (loads := _loads(machine, wheel)) else [""]
+            lines += ["", loads, ""] if (loads := _loads(wheel, before)) else [""]
         if folder is not None:
             lines.append(wrote_into(folder, [_drawn(machine, wheel, folder)]))
         if write is not None:
@@ -74,14 +77,19 @@ def flywheel(
         raise Exit(3)
 
 
-def _loads(scene: Scene, wheel: Flywheel) -> str:
-    """Bearing loads with the scene's inertia, if it has any, and with the one that was sized."""
+def _before(scene: Scene) -> Measures | None:
+    """Measures of the settled cycle with the scene's inertia; None where it has none or does not
+    settle with it."""
     from crankmbs.design.flywheel import fluctuations
+
+    inertia = scene.crank.moment_of_inertia
+    return fluctuations(scene, [inertia])[0] if inertia > 0.0 else None
+
+
+def _loads(wheel: Flywheel, before: Measures | None) -> str:
+    """Bearing loads with the scene's inertia, if it has any, and with the one that was sized."""
     from crankmbs.measures import measure
 
-    before, inertia = None, scene.crank.moment_of_inertia
-    if inertia > 0.0:
-        (before,) = fluctuations(scene, [inertia])
     return loads_table("the settled cycle", before, measure(wheel.result), "with it")
 
 
@@ -106,22 +114,29 @@ def _drawn(scene: Scene, wheel: Flywheel, folder: Path) -> str:
 
 
 def _written(path: Path, scene: Scene, wheel: Flywheel, file: Path) -> tuple[Path, ...]:
-    """The scene with the inertia, in its own text; one that is set free or balanced is written
-    anew, with the load."""
-    from crankmbs.export import copy_scene, export
+    """The scene with the inertia, in its own text; set free or balanced also with its start and the
+    load."""
+    from crankmbs.export import copy_scene
     from crankmbs.scene.loads import Constant
 
     settled = wheel.result.scene
+    assert settled.start is not None
     further = settled.torque[len(scene.torque) :]
-    added = sum(abs(load.torque) for load in further if isinstance(load, Constant))
-    value = f"{digits(*wheel.inertia)} kg m^2"
-    if scene.motion is None and added <= _NOTHING * wheel.work.value:
-        remark = f"the speed fluctuates by {100.0 * wheel.fluctuation.value:.4g} %"
-        return copy_scene(path, file, {"inertia": value}, remark)
-    return export(settled, "toml", file)
+    torque = math.fsum(load.torque for load in further if isinstance(load, Constant))
+    inertia = {"inertia": f"{digits(*wheel.inertia)} kg m^2"}
+    remark = f"the speed fluctuates by {100.0 * wheel.fluctuation.value:.4g} %"
+    loaded = abs(torque) > _NOTHING * wheel.work.value
+    if scene.motion is None and not loaded:
+        return copy_scene(path, file, inertia, remark)
+    start = {
+        "angle": f"{settled.start.angle / DEGREE:.9g} deg",
+        "speed": f"{settled.start.speed / RPM:.9g} rpm",
+    }
+    load = f"{torque:.9g} N m" if loaded else None
+    return copy_scene(path, file, inertia, remark, start=start, torque=load)
 
 
-def _report(name: str, scene: Scene, wheel: Flywheel) -> str:
+def _report(name: str, scene: Scene, wheel: Flywheel, before: Measures | None) -> str:
     lines = [
         f"{heading(name, scene.title)}\n",
         f"{'flywheel':<12} {wheel.message}",
@@ -135,10 +150,15 @@ def _report(name: str, scene: Scene, wheel: Flywheel) -> str:
             _row("less rods and pistons, their mean [kg m^2]", (wheel.moving, 0.0)),
             _row("crank and flywheel by the formula [kg m^2]", wheel.lecture_crank),
         ]
+    present = []
+    if before is not None:
+        inertia = f"{scene.crank.moment_of_inertia:.6g} kg m^2"
+        present = [_row(f"the same with the scene's {inertia} [1]", before.fluctuation)]
     rows = [
         _row("inertia of crank and flywheel [kg m^2]", wheel.inertia),
         _row("of which beyond the scene's [kg m^2]", (wheel.added, wheel.inertia.error)),
         _row("coefficient of fluctuation, (max - min)/mean [1]", wheel.fluctuation),
+        *present,
         _row("mean speed [rpm]", wheel.mean_speed, 1.0 / RPM),
         _row("W, excess of work at that constant speed [J]", wheel.work),
         _row("the formula's inertia, W / (fluctuation omega^2) [kg m^2]", wheel.lecture),

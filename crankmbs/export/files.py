@@ -76,15 +76,22 @@ def refused_kind(to: object) -> str:
 
 
 def copy_scene(
-    path: str | Path, file: str | Path, crank: Mapping[str, str] | None = None, remark: str = ""
+    path: str | Path,
+    file: str | Path,
+    crank: Mapping[str, str] | None = None,
+    remark: str = "",
+    *,
+    start: Mapping[str, str] | None = None,
+    torque: str | None = None,
 ) -> tuple[Path, ...]:
     """Copy a scene file, its units and comments as they are, with its tables; values of [crank] may
-    be set.
+    be set, or the crank set free.
 
     Parameters
     ----------
     path : of the scene; file : its name ends in .toml
     crank : key -> value with its unit, {"inertia": "0.3 kg m^2"}; remark : the comment beside each
+    start : the same of [start], in place of [motion]; torque : of a constant load, "-23.7 N m"
 
     Returns
     -------
@@ -96,7 +103,8 @@ def copy_scene(
     OutputError : the file cannot be written, or one of the files exists already
     """
     target = _ending(Path(file), "toml")
-    return _new(edited_files(Path(path), target, crank or {}, remark), target)
+    files = edited_files(Path(path), target, crank or {}, remark, start=start, torque=torque)
+    return _new(files, target)
 
 
 def _ending(target: Path, to: str) -> Path:

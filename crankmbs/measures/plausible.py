@@ -272,7 +272,7 @@ def _loads(scene: Scene) -> Iterator[str]:
         torque = float(load(0.0, start.angle, start.speed))
         if torque * start.speed > 0.0:
             yield (
-                f"torque[{number}]: the {load.name} of {torque:+.4g} N m at the "
+                f"torque[{number}]: the {load.called} of {torque:+.4g} N m at the "
                 "start drives, as the gas does; a load that brakes has the sign opposite to the "
                 "speed's"
             )

@@ -55,9 +55,9 @@ class OnCrank:
         return self.force.heading
 
     @property
-    def name(self) -> str:
-        """Its kind in words."""
-        return self.force.name
+    def called(self) -> str:
+        """Its name; without one its kind in words."""
+        return self.force.called
 
     @property
     def lacks(self) -> str | None:

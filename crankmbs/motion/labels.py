@@ -132,8 +132,8 @@ def _text(scene: Scene, kind: Kind, number: int, time: float, share: float) -> s
         loads = *scene.torque, *scene.force
         load, which = loads[number - 1], place_of(loads, number)
         if kind is Kind.LOAD_ON:
-            return f"{which}, {load.name}, sets in at {_met(time, load.after, load.from_speed)}"
-        return f"{which}, {load.name}, ends at {_met(time, load.until, load.until_speed)}"
+            return f"{which}, {load.called}, sets in at {_met(time, load.after, load.from_speed)}"
+        return f"{which}, {load.called}, ends at {_met(time, load.until, load.until_speed)}"
     if kind is Kind.REST:
         return "comes to rest" if time > 0.0 else "stands at rest"
     return f"moves off {sense}" if kind is Kind.START else f"turns back, {sense} from here"

@@ -74,7 +74,7 @@ def _turned_back(scene: Scene, omega: Array) -> Iterator[str]:
     for number, load in enumerate(scene.torque, start=1):
         if load.parts.over_angle is not None:
             yield (
-                f"torque[{number}]: the crank turned back, and the {load.name} is the same at an "
+                f"torque[{number}]: the crank turned back, and the {load.called} is the same at an "
                 "angle whichever way the crank turns"
             )
 

@@ -243,7 +243,7 @@ def _friction(scene: Scene) -> str:
 
 
 def _force(force: PistonForce) -> str:
-    return f"on {force.acts_on}, {force.name}: {force.words}{force.window_words}"
+    return f"on {force.acts_on}, {force.introduced}: {force.words}{force.window_words}"
 
 
 def _shells(scene: Scene) -> str:
@@ -325,7 +325,7 @@ def _sense(speed: float) -> str:
 
 def _load(scene: Scene, load: Torque) -> str:
     assert scene.start is not None
-    text = f"{load.name}, {load.words}{load.window_words}"
+    text = f"{load.introduced}, {load.words}{load.window_words}"
     speed = scene.start.speed
     if any(phase is not Phase.ACTING for phase in first_phases((load,), speed)):
         return f"{text}; none at the start"

@@ -21,7 +21,7 @@ def event_words(result: Result) -> list[str]:
     if scene.fuel is not None:
         fired_from = scene.fuel.after > 0.0 or scene.fuel.from_speed is not None
         cut = scene.fuel.until is not None or scene.fuel.until_speed is not None
-    names = [load.name for load in scene.torque]
+    names = [load.called for load in scene.torque]
     names = [f"{name} {k}" if names.count(name) > 1 else name for k, name in enumerate(names, 1)]
     words = [
         f"{names[load - 1]} {kind.removeprefix('load ')}" if load else kind

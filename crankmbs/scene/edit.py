@@ -1,10 +1,11 @@
-"""A scene file copied with some values of its crank set: units, comments and order stay."""
+"""A scene file copied with its crank set, or set free: units, comments and order stay."""
 
 from __future__ import annotations
 
+import dataclasses
 import re
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,16 +16,21 @@ from crankmbs.scene.write import scene_files
 __all__ = ["edited_files"]
 
 _HEADING = re.compile(r"\s*\[")
-_CRANK = re.compile(r"\s*\[\s*crank\s*\]\s*(#.*)?")
 _WORDS = {"title", "source"}
 
 
 def edited_files(
-    path: Path, target: Path, crank: Mapping[str, str], remark: str = ""
+    path: Path,
+    target: Path,
+    crank: Mapping[str, str],
+    remark: str = "",
+    *,
+    start: Mapping[str, str] | None = None,
+    torque: str | None = None,
 ) -> dict[str, bytes]:
-    """The text of a scene file with values of [crank] set, and its tables.
+    """The text of a scene file with values of [crank] and [start] set, and its tables.
 
-    A file whose [crank] cannot be edited in place, such as an inline table, is written anew as
+    A file whose tables cannot be edited in place, such as inline ones, is written anew as
     `scene_files` does.
 
     Parameters
@@ -32,6 +38,8 @@ def edited_files(
     path : the scene file; target : where the copy shall stand, beside whose name its tables are
         named unless it stands in the same folder
     crank : key -> value with its unit, "0.3 kg m^2"; remark : the comment beside each
+    start : the same of [start], which takes the place of [motion], if any
+    torque : of a further constant load, "-23.7 N m"
 
     Returns
     -------
@@ -43,7 +51,14 @@ def edited_files(
     """
     scene = load_scene(path)
     edited = scene.with_(**{f"crank__{key}": value for key, value in crank.items()})
-    text = _set(path.read_bytes().decode("utf-8-sig"), crank, remark)
+    text = _set(path.read_bytes().decode("utf-8-sig"), "crank", crank, remark)
+    if start is not None:
+        load = () if torque is None else ({"kind": "constant", "torque": torque},)
+        free: Any = {"start": dict(start), "motion": None, "torque": (*edited.torque, *load)}
+        edited = dataclasses.replace(edited, **free)
+        text = _set(_without_motion(text), "start", start, "")
+        if torque is not None:
+            text += f'\n[[torque]]\nkind = "constant"\ntorque = "{torque}"\n'
     if not _is(text, path, edited):
         files = scene_files(edited, target.stem)
         return {name: part.encode() for name, part in files.items()}
@@ -57,20 +72,40 @@ def edited_files(
     return {target.name: text.encode(), **tables}
 
 
-def _set(text: str, crank: Mapping[str, str], remark: str) -> str:
-    """The text with these values, where there is a heading [crank]."""
+def _set(text: str, heading: str, values: Mapping[str, str], remark: str) -> str:
+    """The text with these values, where it has this heading."""
     lines = text.splitlines()
-    begin = next((k for k, line in enumerate(lines, 1) if _CRANK.fullmatch(line)), None)
+    begin = _line_below(lines, heading)
     if begin is None:
         return text
     comment = f"    # {remark}" if remark else ""
-    for key, value in crank.items():
+    for key, value in reversed(list(values.items())):  # each below the heading, above the last
         of_key = re.compile(rf"\s*{key}\s*=")
-        end = next((k for k in range(begin, len(lines)) if _HEADING.match(lines[k])), len(lines))
-        place = next((k for k in range(begin, end) if of_key.match(lines[k])), None)
+        place = next((k for k in range(begin, _end(lines, begin)) if of_key.match(lines[k])), None)
         new = f'{key} = "{value}"{comment}'
         lines[begin if place is None else place : begin if place is None else place + 1] = [new]
     return "\n".join(lines) + "\n"
+
+
+def _without_motion(text: str) -> str:
+    """The text with an empty [start] in place of [motion]; comments of their own lines stay."""
+    lines = text.splitlines()
+    begin = _line_below(lines, "motion")
+    if begin is None:
+        return text
+    end = _end(lines, begin)
+    kept = [line for line in lines[begin:end] if not line.strip() or line.lstrip()[:1] == "#"]
+    return "\n".join([*lines[: begin - 1], "[start]", *kept, *lines[end:]]) + "\n"
+
+
+def _line_below(lines: Sequence[str], heading: str) -> int | None:
+    of_heading = re.compile(rf"\s*\[\s*{heading}\s*\]\s*(#.*)?")
+    return next((k for k, line in enumerate(lines, 1) if of_heading.fullmatch(line)), None)
+
+
+def _end(lines: Sequence[str], begin: int) -> int:
+    """The line of the next heading."""
+    return next((k for k in range(begin, len(lines)) if _HEADING.match(lines[k])), len(lines))
 
 
 def _is(text: str, path: Path, edited: Scene) -> bool:

@@ -33,6 +33,7 @@ _OF_KEYS = {
     "motored": '"motored.csv"',
     "n_compression": "1.32",
     "n_expansion": "1.27",
+    "name": '"starter"',
     "offset": '"1.3 mm"',
     "order": "2",
     "over": '"2 s"',

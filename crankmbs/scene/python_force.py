@@ -30,7 +30,7 @@ class Force(OfFunction, PistonForce):
     period [rad] : declares that it does not depend on t and repeats over the cycle angle; any
         multiple of half a revolution, or a whole part of two revolutions
 
-    >>> Force(lambda t, cycle_angle, displacement, velocity: -2.0 * velocity).name
+    >>> Force(lambda t, cycle_angle, displacement, velocity: -2.0 * velocity).called
     'function'
     """
 

@@ -63,8 +63,8 @@ class Acting(Protocol):
         """Of its table in a file."""
 
     @property
-    def name(self) -> str:
-        """Its kind in words."""
+    def called(self) -> str:
+        """Its name; without one its kind in words."""
 
     @property
     def lacks(self) -> str | None:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Annotated, Any, ClassVar, TypeVar
 
 from annotated_types import Ge
-from pydantic import TypeAdapter, ValidationError, ValidationInfo
+from pydantic import Strict, TypeAdapter, ValidationError, ValidationInfo
 
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.schema import SAVED, Float, of_file, part, si
@@ -29,13 +29,14 @@ class Windowed(ABC):
 
     It acts from when the time ``after`` [s] and the speed ``from_speed`` [rad/s] have both been met
     to the time ``until`` or, after that, the speed ``until_speed``, and then never again; what is
-    not given bounds nothing.
+    not given bounds nothing. ``name`` is what it is called in tables and figures.
     """
 
     kinds: ClassVar[dict[str, type[Any]]] = {}
     unwritten: ClassVar[dict[str, type[Any]]] = {}  # no file names them, but a saved result
     heading: ClassVar[str]  # of its table in a file
     kind: str
+    name: Annotated[str, Strict()] = ""
     after: Time | None = None
     until: Time | None = None
     from_speed: AngularSpeed | None = None
@@ -70,9 +71,14 @@ class Windowed(ABC):
         return any(end is not None for end in ends)
 
     @property
-    def name(self) -> str:
-        """Its kind in words."""
-        return self.kind.replace("_", " ")
+    def called(self) -> str:
+        """Its name on one line; without one its kind in words."""
+        return " ".join(self.name.split()) or self.kind.replace("_", " ")
+
+    @property
+    def introduced(self) -> str:
+        """Its name, where it has one, and its kind."""
+        return ", ".join(dict.fromkeys([self.called, self.kind.replace("_", " ")]))
 
     @property
     def table_over_time(self) -> Table | None:

@@ -13,12 +13,28 @@ from crankmbs.scene.run import Extent
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.schema import dimension_of
 from crankmbs.scene.tables import CylinderTable, Header, Table, tables_of
-from crankmbs.scene.units import DEGREE, RPM, unit_of
+from crankmbs.scene.units import DEGREE, quantity, unit_of
 from crankmbs.scene.windowed import Windowed
 
 __all__ = ["scene_files"]
 
-_READ_IN = {"angle": (DEGREE, "deg"), "angular speed": (RPM, "rpm")}  # else in SI
+_READ_IN = {  # the first, unless another needs far fewer digits; all else in SI
+    "angle": ("deg", "rad"),
+    "angular speed": ("rpm", "rad/s"),
+    "area": ("cm^2", "mm^2", "m^2"),
+    "force": ("N", "kN", "lbf"),
+    "inertia": ("kg m^2", "kg cm^2", "lb in^2"),
+    "length": ("mm", "m", "in"),
+    "mass": ("kg", "g", "lb"),
+    "pressure": ("bar", "kPa", "kgf/cm^2", "psi", "Pa"),
+    "stiffness": ("N/mm", "N/m", "lbf/in"),
+    "time": ("s", "ms"),
+    "torque": ("N m", "kN m", "lbf ft"),
+    "unbalance": ("kg m", "g mm", "g cm"),
+    "viscous coefficient": ("N m s", "N m/rpm"),
+    "quadratic coefficient": ("N m s^2", "N m/rpm^2"),
+}
+_FAR_FEWER = 4
 _PRESSURES = ("pressure", "motored", "crank_end")  # constants where they are no tables
 _PRESSURE = Header({"crank_angle_deg": DEGREE}, {"pressure_Pa": 1.0})  # not of speeds and loads
 
@@ -101,8 +117,11 @@ def _values(part: Any) -> Iterator[tuple[str, Any, str | None]]:
 def _scalar(value: Any, dimension: str | None) -> str:
     if isinstance(value, Extent):
         if value.unit == "rad":
-            return _number(value.value, "angle")
-        return f'"{_digits(value.value)} {value.unit}"'
+            turns = value.value / (2.0 * math.pi)
+            whole = turns == round(turns) and quantity(f"{turns:g} rev", "angle") == value.value
+            return f'"{turns:g} rev"' if whole else _number(value.value, "angle")
+        unit = "cycles" if value.unit == "cycle" and value.value != 1.0 else value.unit
+        return f'"{_digits(value.value)} {unit}"'
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, float):
@@ -113,11 +132,22 @@ def _scalar(value: Any, dimension: str | None) -> str:
 def _number(value: float, dimension: str | None) -> str:
     if dimension is None:
         return _digits(value)
-    factor, unit = _READ_IN.get(dimension, (1.0, unit_of(dimension)))
-    number = _divided(value, factor)
-    if factor * number != value:
-        number, unit = value, unit_of(dimension)
-    return f'"{_digits(number)} {unit}"'
+    best, length = f"{_digits(value)} {unit_of(dimension)}", math.inf
+    for unit in _READ_IN.get(dimension, (unit_of(dimension),)):
+        factor = quantity(f"1 {unit}", dimension)
+        text = next((t for t in _texts(value / factor) if float(t) * factor == value), None)
+        if text is not None and len(text) < length:
+            best, length = f"{text} {unit}", len(text) - _FAR_FEWER
+    return f'"{best}"'
+
+
+def _texts(number: float) -> Iterator[str]:
+    """A number with ever more digits, and its neighbours with all."""
+    for count in range(1, 17):
+        rounded = float(f"{number:.{count}g}")
+        yield _digits(rounded)
+    for neighbour in (number, math.nextafter(number, math.inf), math.nextafter(number, -math.inf)):
+        yield _digits(neighbour)
 
 
 def _digits(value: float) -> str:
