@@ -18,7 +18,7 @@ from crankmbs.sweep.columns import Column, Row
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Reading", "amount_of", "reading_of"]
+__all__ = ["Reading", "amount_of", "is_measure", "reading_of"]
 
 _DEVIATION = "lecture_deviation"
 _LECTURES = {name.partition(" ")[0].lower(): name for name in LECTURES}  # "s1", "untruncated"
@@ -120,6 +120,20 @@ def reading_of(text: str, columns: Mapping[str, Column]) -> Reading:
         f"{shown(text)} is no measure of these cases{hint} are {', '.join(listed)}, and QUANTITY "
         "by S1"
     )
+
+
+def is_measure(text: str, columns: Mapping[str, Column]) -> bool:
+    """Whether `reading_of` knows it.
+
+    >>> from crankmbs.sweep.columns import columns_of
+    >>> is_measure("rod ratio", columns_of(load_scene("propeller"), series=False))
+    False
+    """
+    try:
+        reading_of(text, columns)
+    except InputError:
+        return False
+    return True
 
 
 def _key(words: str) -> frozenset[str]:
