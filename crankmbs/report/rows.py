@@ -23,6 +23,7 @@ from crankmbs.scene.scene import Scene
 __all__ = [
     "FORCE_HEADINGS",
     "Table",
+    "cycle_remark",
     "degrees_within",
     "labelled",
     "measure_rows",
@@ -109,6 +110,19 @@ def unsteady(result: Result, measures: Measures) -> str:
     """
     why = not_periodic(measures)
     return f"{why}; peaks are of {_part(result)}" if why else ""
+
+
+def cycle_remark(scene: Scene) -> str:
+    """What a cycle is in a machine without gas, in words; nothing with gas.
+
+    >>> cycle_remark(load_scene("propeller"))
+    ''
+    """
+    if scene.gas is not None:
+        return ""
+    return (
+        'two turns, 720 deg, in a machine without gas; an end such as "10 rev" counts single turns'
+    )
 
 
 def not_periodic(measures: Measures) -> str:
