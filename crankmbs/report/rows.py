@@ -168,6 +168,8 @@ def _rows(
         ((power, error),) = estimates
         words = "brake power" if power > 0.0 else "drive power"
         estimates = (Estimate(abs(power), error),)
+    if name == "kinetic_power" and abs(estimates[0].value) <= estimates[0].error:
+        return []
     if name == "piston_speed":
         low, high = min(estimates).value, max(estimates).value
         estimates = estimates[:1] if high - low <= _SAME * high else estimates
