@@ -97,6 +97,10 @@ def test_the_energy_of_each_cycle_closes(name, formulation):
     assert left < 1e-9 * largest
 
 
+def test_the_first_cycle_begins_when_the_run_does():
+    assert simulate(load_scene("coasting")).cycles["time"].values[0] == 0.0
+
+
 def test_the_energy_closes_to_rounding():
     for name in ("propeller", "begins between two knots", "fuel and loads"):
         left, largest = unbalanced(simulate(SCENES[name], rtol=1e-13).cycles)

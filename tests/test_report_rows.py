@@ -19,7 +19,15 @@ from crankmbs import (
     load_scene,
     simulate,
 )
-from crankmbs.report.rows import FORCE_HEADINGS, measure_rows, peak_rows, tables, unsteady
+from crankmbs.report.machine import machine_rows
+from crankmbs.report.rows import (
+    FORCE_HEADINGS,
+    cycle_remark,
+    measure_rows,
+    peak_rows,
+    tables,
+    unsteady,
+)
 
 PEAK = 370.0  # deg, of the pressure, in the cycle of each cylinder
 ORDER = (1, 3, 4, 2)
@@ -102,6 +110,13 @@ def test_a_machine_without_gas_that_works_takes_drive_power():
     assert rows["power of the forces on the pistons [kW]"] < 0.0
     works = taken - rows["power of the forces on the pistons [kW]"]
     assert rows["drive power [kW]"] == pytest.approx(works, rel=1e-5)
+
+
+def test_a_machine_without_gas_says_what_a_cycle_is():
+    assert "two turns, 720 deg" in cycle_remark(load_scene("coasting"))
+    assert math.degrees(load_scene("coasting").period) == pytest.approx(720.0)
+    assert not any(cycle_remark(load_scene(name)) for name in ("propeller", "compressor"))
+    assert ("cycle", cycle_remark(load_scene("coasting"))) in machine_rows(load_scene("coasting"))
 
 
 def test_a_run_that_speeds_up_has_peaks_of_the_whole_run():

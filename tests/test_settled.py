@@ -135,7 +135,7 @@ def test_backwards_and_from_rest(start: float) -> None:
 
 
 ENDS = {
-    "runs away": (replace(DIESEL, torque=()), "its speed grows without bound"),
+    "runs away": (replace(DIESEL, torque=()), "bound; give a load that grows with the speed"),
     "balanced": (load_scene("coasting"), "balance one another at any speed"),
     "brake": (
         replace(load_scene("coasting"), gravity=None, torque=(Viscous(coefficient=0.01),)),

@@ -313,6 +313,29 @@ def test_two_knobs_are_contours_with_the_line_of_the_limit(grid):
     assert png(figure)
 
 
+def test_a_measure_is_an_axis_in_place_of_the_last_knob(grid):
+    figure = sweep_figure(grid, "torque by S1", "5 %", "fluctuation")
+    ax, fluctuation = figure.axes[0], 100.0 * grid["fluctuation"].values
+    assert ax.get_xlabel() == "coefficient of fluctuation, (max - min)/mean [%]"
+    assert ax.get_ylabel() == "rod ratio"
+    assert ax.get_xlim() == pytest.approx((fluctuation.min(), fluctuation.max()))
+    (filled, *_) = (c for c in ax.collections if isinstance(c, QuadContourSet))
+    corners = np.concatenate([path.vertices for path in filled.get_paths()])
+    for k in (0, -1):  # along the edges each case is a corner
+        row = corners[np.isclose(corners[:, 1], grid["rod_ratio"].values[k]), 0]
+        assert np.abs(row[:, None] - fluctuation[k]).min(axis=0) == pytest.approx(0.0, abs=1e-12)
+    one = grid.isel({"rod_ratio": [0]})
+    curve = sweep_figure(one, "torque by S1", over="fluctuation").axes[0].lines[0]
+    np.testing.assert_allclose(curve.get_xdata(), fluctuation[0])
+
+
+def test_who_varies_a_measure_is_told_the_way(tmp_path):
+    vary = ["--vary", "fluctuation=1..5 %:3"]
+    text = refused("sweep", "propeller", *vary, "-o", str(tmp_path / "s.zarr"))
+    assert "fluctuation: is a measure, which follows from a case; vary what it depends on" in text
+    assert 'crankmbs plot SWEEP --over "fluctuation"' in text
+
+
 def test_three_knobs_are_small_multiples():
     vary = {"rod_ratio": "0.2..0.4:2", "piston.mass": "1..2 kg:2", "motion.speed": "1e3..3e3 rpm:3"}
     scene = load_scene("yi_diesel").with_(run__until="1 cycles")
@@ -351,6 +374,8 @@ def test_a_sample_is_points_over_each_knob_and_failures_are_counted():
     ],
 )
 def test_what_cannot_be_drawn_is_refused(grid, show, limit, said):
+    with pytest.raises(InputError, match='over: "fluctation" is no measure of these cases; did'):
+        sweep_figure(grid, "fluctuation", over="fluctation")
     with pytest.raises(InputError, match=re.escape(said)):
         sweep_figure(grid, show, limit)
 

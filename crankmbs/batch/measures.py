@@ -51,6 +51,7 @@ def measure(machine: Machine, pairs: Pairs) -> tuple[Numbers, Numbers]:
     answer, peaks = _numbers(machine, one, pairs.cases, None)
     check, _ = _numbers(machine, other, pairs.cases, peaks)
     rounded = {"speed_gain": answer["fast"], "fluctuation": answer["fast"] / answer["mean_speed"]}
+    rounded["kinetic_power"] = answer["greatest"] / answer["duration"]
     rounded |= dict.fromkeys(("torque_max", "torque_min"), answer.pop("level"))
     errors = {
         name: np.abs(value - check[name]) + ROUNDING * np.abs(rounded.get(name, value))
@@ -158,6 +159,7 @@ def _numbers(
         "crank_torque": (share * rods).sum(axis=(1, 2)) / turned,
         "external_torque": (share * load).sum(axis=(1, 2)) / turned,
     }
+    numbers["kinetic_power"] = (courses.ends[:, -1] - courses.begin) / time
     numbers["brake_power"] = -numbers["external_torque"] * mean
     return numbers | _powers(machine, tables, numbers["duration"]), peaks
 

@@ -23,6 +23,13 @@ def plot(
     limit: Annotated[
         str | None, Option(help='Of what is shown, "1 %" or "20 kN": a line is drawn there.')
     ] = None,
+    over: Annotated[
+        str | None,
+        Option(
+            metavar="MEASURE",
+            help='Such as "fluctuation": it is the axis in place of what was varied last.',
+        ),
+    ] = None,
     out: Annotated[
         Path | None,
         Option("-o", "--out", help="Folder of the figures, or one PNG file; default results/NAME."),
@@ -42,7 +49,7 @@ def plot(
     drawn = {}
     for words in names:
         try:
-            drawn[file or f"{'_'.join(words.split())}.png"] = sweep_figure(data, words, limit)
+            drawn[file or f"{'_'.join(words.split())}.png"] = sweep_figure(data, words, limit, over)
         except InputError as error:
             raise InputError(f"--show {words}: {error}") from None
     with together(folder) as part:

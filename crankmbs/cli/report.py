@@ -13,7 +13,7 @@ from crankmbs.digits import digits, error_digits
 from crankmbs.measures import Measures
 from crankmbs.measures.plausible import warnings
 from crankmbs.report.machine import journal_remarks
-from crankmbs.report.rows import degrees_within, tables, unsteady
+from crankmbs.report.rows import cycle_remark, degrees_within, tables, unsteady
 from crankmbs.result import Result
 from crankmbs.scene.units import RPM
 
@@ -85,6 +85,7 @@ def _about(result: Result, measures: Measures) -> str:
             f"{'end':<12} {result.message}",
             f"{'samples':<12} {samples}",
             f"{'last sample':<12} {math.degrees(angle[-1]):.6g} deg, {speed[-1] / RPM:.6g} rpm",
+            *([f"{'cycle':<12} {remark}"] if (remark := cycle_remark(result.scene)) else []),
             *([f"{'speed':<12} {fault}"] if (fault := unsteady(result, measures)) else []),
             *_events(result),
             _error_line(result),

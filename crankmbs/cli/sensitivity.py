@@ -90,5 +90,6 @@ def _indices(shares: SobolIndices) -> str:
         [name, *cells(first), *cells(total)]
         for name, first, total in zip(shares.knobs, shares.first, shares.total, strict=True)
     ]
-    headings = ["knob", "first order", "error", "total", "error"]  # of the sample, too
-    return f"{shares.measure.words}, {shares.message}\n\n{table(headings, rows)}"
+    headings = ["knob", "first order", "+- 95 %", "total", "+- 95 %"]
+    note = "+- 95 %: what sampling may move an index by, and the numerical error of the measure"
+    return f"{shares.measure.words}, {shares.message}\n\n{table(headings, rows)}\n{note}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -39,12 +40,14 @@ class _Drawn(NamedTuple):
     """What is drawn of a sweep, in the units shown.
 
     values : over the knobs of a grid, or over the cases; limit : where a line is drawn
+    over : another measure alike, as an axis in place of the last knob, and its label
     """
 
     values: Any
     words: str
     unit: str
     limit: float | None
+    over: tuple[Any, str] | None = None
 
     @property
     def label(self) -> str:
@@ -53,7 +56,8 @@ class _Drawn(NamedTuple):
 
 
 class _Axis(NamedTuple):
-    """A knob as an axis: where its values stand, and their words where they are no numbers."""
+    """A knob or a measure as an axis: where its values stand, of a measure over a grid a table, and
+    their words where they are no numbers."""
 
     label: str
     at: Array
@@ -72,7 +76,9 @@ class _Axis(NamedTuple):
 
 
 @rc_context(STYLE)
-def sweep_figure(data: xr.Dataset, show: str, limit: str | None = None) -> Figure:
+def sweep_figure(
+    data: xr.Dataset, show: str, limit: str | None = None, over: str | None = None
+) -> Figure:
     """A measure of a sweep over what was varied.
 
     One knob of a grid with several values gives a curve, two filled contours, more a panel of
@@ -83,6 +89,7 @@ def sweep_figure(data: xr.Dataset, show: str, limit: str | None = None) -> Figur
     data : as `crankmbs.load_sweep` reads it
     show : a measure in words, "fluctuation" or "peak crank pin force", or "side thrust by S1"
     limit : of it, "1 %" or "20 kN", where a line is drawn
+    over : another measure, "fluctuation", as the axis in place of the knob that was varied last
 
     Raises
     ------
@@ -95,12 +102,15 @@ def sweep_figure(data: xr.Dataset, show: str, limit: str | None = None) -> Figur
         if "units" in variable.attrs
     }
     reading = reading_of(show, columns)
-    values, error = reading.of_sweep(data)
-    if not np.isfinite(values.values).any():
-        raise InputError(f"{show}: no case of this sweep has it")
+    values, error = _of_cases(data, reading)
     scale, unit = _on_axis(reading.about.units)
     at = None if limit is None else _limit(limit, reading) / scale
     drawn = _Drawn(values / scale, reading.words, unit, at)
+    if over is not None:
+        measure = _measure(over, columns)
+        size, its_unit = _on_axis(measure.about.units)
+        label = f"{measure.words} [{_typeset(its_unit)}]"
+        drawn = drawn._replace(over=(_of_cases(data, measure)[0] / size, label))
     knobs = [str(name) for name in values.dims if name in data.coords]
     if len(knobs) > 1:
         figure = _over(data, drawn, knobs)
@@ -116,6 +126,21 @@ def sweep_figure(data: xr.Dataset, show: str, limit: str | None = None) -> Figur
         lines.append(f"all cases lie on one side of {_amount(drawn)}")
     caption(figure, [line for line in lines if line])
     return figure
+
+
+def _measure(over: str, columns: Mapping[str, Column]) -> Reading:
+    try:
+        return reading_of(over, columns)
+    except InputError as error:
+        raise InputError(f"over: {error}") from None
+
+
+def _of_cases(data: xr.Dataset, reading: Reading) -> tuple[xr.DataArray, float]:
+    """A measure of every case and the largest of its errors."""
+    values, error = reading.of_sweep(data)
+    if not np.isfinite(values.values).any():
+        raise InputError(f"{reading.words}: no case of this sweep has it")
+    return values, error
 
 
 def _limit(text: str, reading: Reading) -> float:
@@ -135,8 +160,9 @@ def _varied(data: xr.Dataset) -> xr.Dataset:
 def _over(data: xr.Dataset, drawn: _Drawn, knobs: list[str]) -> Figure:
     """Filled contours over the first two knobs, a panel for each combination of the others."""
     y, x, *further = knobs
-    rest = drawn.values.stack(panel=further).transpose("panel", y, x) if further else None
-    count = 1 if rest is None else rest.sizes["panel"]
+    stacked = drawn.values.stack(panel=further) if further else drawn.values.expand_dims("panel")
+    tables = stacked.transpose("panel", y, x)
+    count = tables.sizes["panel"]
     if count > _MOST:
         raise InputError(
             f"{', '.join(further)}: {count} panels are too many; at most {_MOST} are drawn, vary "
@@ -144,27 +170,31 @@ def _over(data: xr.Dataset, drawn: _Drawn, knobs: list[str]) -> Figure:
         )
     figure, axes = tiles(count, _COLUMNS, *_SIZES)
     levels = _levels(drawn.values.values)
+    across = _axis(data, x)
     for k, ax in enumerate(axes):
-        table = drawn.values.values if rest is None else rest.values[k]
-        filled = _contours(
-            ax, (_axis(data, x), _axis(data, y)), drawn._replace(values=table), levels
-        )
-        if rest is not None:
-            ax.set_title(_title(data, further, rest["panel"].values[k]), fontsize=11)
+        if drawn.over is not None:
+            along, label = drawn.over
+            parts = along.stack(panel=further) if further else along.expand_dims("panel")
+            across = _measured(parts.transpose("panel", y, x).values[k], label)
+        panel = drawn._replace(values=tables.values[k])
+        filled = _contours(ax, (across, _axis(data, y)), panel, levels)
+        if further:
+            ax.set_title(_title(data, further, tables["panel"].values[k]), fontsize=11)
     figure.colorbar(filled, ax=axes, ticks=levels)
     return figure
 
 
 def _contours(ax: Axes, at: tuple[_Axis, _Axis], drawn: _Drawn, levels: Array) -> Any:
     (x, y), table, limit = at, np.ma.masked_invalid(drawn.values), drawn.limit
+    places = np.broadcast_arrays(x.at, y.at[:, None])
     ax.set_facecolor("white")
     ax.grid(visible=False)
-    filled = ax.contourf(x.at, y.at, table, levels, cmap="viridis")
+    filled = ax.contourf(*places, table, levels, cmap="viridis")
     inks = ["white" if level < np.mean(levels) else "black" for level in levels]
-    lines = ax.contour(x.at, y.at, table, levels, colors=inks, linewidths=0.6)
+    lines = ax.contour(*places, table, levels, colors=inks, linewidths=0.6)
     ax.clabel(lines, fmt=lambda level: f"{level:.6g}", fontsize=11)
     if limit is not None and levels[0] < limit < levels[-1]:
-        ax.contour(x.at, y.at, table, [limit], colors=COLOURS[1])
+        ax.contour(*places, table, [limit], colors=COLOURS[1])
         ax.plot([], [], color=COLOURS[1], label=_amount(drawn))  # beside it, it is cut at an edge
         ax.legend(loc="upper right")
     x.along(ax.xaxis)
@@ -179,10 +209,13 @@ def _amount(drawn: _Drawn) -> str:
 
 
 def _over_each(data: xr.Dataset, drawn: _Drawn, names: list[str], *, joined: bool) -> Figure:
-    """A panel over each knob: a curve where the values of a grid are joined, else points."""
-    figure, axes = tiles(len(names), _COLUMNS, *_SIZES)
-    for ax, name in zip(axes, names, strict=True):
-        axis = _axis(data, name)
+    """A panel over each knob, or over the measure: a curve where the values of a grid are joined,
+    else points."""
+    every = [_axis(data, name) for name in names]
+    if drawn.over is not None:
+        every = [_measured(drawn.over[0].values, drawn.over[1])]
+    figure, axes = tiles(len(every), _COLUMNS, *_SIZES)
+    for ax, axis in zip(axes, every, strict=True):
         at, values = axis.at, drawn.values.values
         line: Any = {
             "marker": "o" if len(at) < 40 else None,
@@ -221,9 +254,15 @@ def _axis(data: xr.Dataset, name: str) -> _Axis:
     return _Axis(label, values / scale, [], log=_is_log(values))
 
 
+def _measured(values: Array, label: str) -> _Axis:
+    """A measure as an axis; a case that has none has no value to draw either, and any place."""
+    return _Axis(label, np.nan_to_num(values, nan=float(np.nanmin(values))), [], _is_log(values))
+
+
 def _is_log(values: Array) -> bool:
     """Whether neighbours are farther apart by a factor than by a difference, on the whole."""
-    ends = np.sort(values)[[0, len(values) // 2, -1]]
+    values = np.sort(values[np.isfinite(values)])
+    ends = values[[0, len(values) // 2, -1]]
     if len(values) < 3 or ends[0] <= 0.0 or ends[2] < 3.0 * ends[0]:
         return False
     even, by_factor = 0.5 * (ends[0] + ends[2]), math.sqrt(ends[0] * ends[2])

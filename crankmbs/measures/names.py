@@ -46,6 +46,7 @@ def names_of(scene: Scene) -> dict[str, Named]:
         "indicated_power_head_end": Named("W", "indicated power, head end") if double else None,
         "indicated_power_crank_end": Named("W", "indicated power, crank end") if double else None,
         "brake_power": Named("W", "brake power (drive power, where negative)") if works else None,
+        "kinetic_power": Named("W", "power into kinetic energy") if works else None,
         "mechanical_efficiency": Named("1", "mechanical efficiency") if gas and rubs else None,
         "imep": Named("Pa", f"{imep}{', head end' if double else ''}", "cylinder") if gas else None,
         "imep_crank_end": Named("Pa", f"{imep}, crank end", "cylinder") if double else None,

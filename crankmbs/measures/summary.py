@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from crankmbs.measures.estimate import Estimate, Number, Numbers, estimates
+from crankmbs.measures.estimate import ROUNDING, Estimate, Number, Numbers, estimates
 from crankmbs.measures.joints import JointForce, joints_of, shell_area
 from crankmbs.measures.nodes import Nodes, nodes_of
 from crankmbs.measures.peaks import SPEEDS, Peak, peak_numbers, peaks_from, quantities_of
 from crankmbs.measures.span import CYCLES, TURNS_BACK, Span, measured_span, passes_over
 from crankmbs.mechanics.axes import areas
+from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.motion.motion import Motion
 from crankmbs.motion.states import samples_in
 from crankmbs.numerics.arrays import Array
@@ -60,6 +61,7 @@ class Measures:
     mechanical_efficiency : where the gas drives, the share of the indicated power that friction
         leaves; where it is driven, indicated power over that with the friction's; None without
         friction or gas
+    kinetic_power [W] : gain of kinetic energy per time, 0 once a motion is periodic
     force_power [W] : what the forces from outside on all pistons give per time, negative where they
         take; None without
     peaks : of torque and pressures, as `crankmbs.measures.peaks.quantities_of` lists them, then
@@ -75,6 +77,7 @@ class Measures:
     joints: tuple[JointForce, ...]
     crank_torque: Estimate
     external_torque: Estimate
+    kinetic_power: Estimate | None = None
     indicated_power: Estimate | None = None
     imep: tuple[Estimate, ...] | None = None
     imep_crank_end: tuple[Estimate, ...] | None = None
@@ -244,7 +247,10 @@ def _numbers(scene: Scene, window: Span, motion: Motion) -> Numbers:
             numbers[name] = work.over(turned)
         else:
             numbers[name] = Number(torque[-1:], np.abs(torque[-1:]))
-    return numbers | (_powers(scene, window, nodes, late) if duration else {})
+    if duration:
+        numbers["kinetic_power"] = _energy_gain(scene, motion).over(duration)
+        numbers |= _powers(scene, window, nodes, late)
+    return numbers
 
 
 def _powers(scene: Scene, window: Span, nodes: Nodes, late: float) -> Numbers:
@@ -318,18 +324,29 @@ def _mean_speed(motion: Motion, window: Span) -> Number:
 
 
 def _fluctuation(extremes: Array, mean: Number) -> Number:
-    """From the largest and the largest negative speed."""
+    """From the largest and the largest negative speed; what is but rounding is none."""
     size = np.abs(mean.value)
     if size[0] == 0.0:
         return Number(np.full(1, math.nan), np.full(1, math.nan))
-    return Number(extremes.sum() / size, np.abs(extremes).max() / size)
+    share, largest = extremes.sum() / size, np.abs(extremes).max() / size
+    return Number(np.where(np.abs(share) > ROUNDING * largest, share, 0.0), largest)
 
 
 def _speed_gain(motion: Motion) -> Number:
-    first, last = motion.cells[0], motion.cells[-1]
-    begin = samples_in(first, motion.train, np.zeros(1, np.intp), np.zeros(1)).omega
-    end = last.speed[-1:, -1]
+    begin, end = (speed for _, speed in _ends(motion))
     return Number(end - begin, np.maximum(np.abs(end), np.abs(begin)))
+
+
+def _energy_gain(scene: Scene, motion: Motion) -> Number:
+    before, after = (0.5 * inertia_alone(scene, at) * speed**2 for at, speed in _ends(motion))
+    return Number(after - before, np.maximum(before, after))
+
+
+def _ends(motion: Motion) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+    """Angle and speed at the beginning of a motion and at its end, shape (1,) each."""
+    first, last = motion.cells[0], motion.cells[-1]
+    begin = samples_in(first, motion.train, np.zeros(1, np.intp), np.zeros(1))
+    return (begin.theta, begin.omega), (last.angle[-1:, -1], last.speed[-1:, -1])
 
 
 def _energy_closure(result: Result) -> float:

@@ -107,6 +107,7 @@ class Cycles:
         cells = piece.cells.cut_at(self._knots, period)
         low, high = sorted((begin.theta, end.theta))
         at = samples_at(cells, self._train, np.clip(marks, low, high), in_time=False)
+        time = np.clip(at.time, begin.time, end.time)  # no cycle begins before its run, by rounding
         kinetic = 0.5 * inertia_alone(self._train.scene, at.theta) * at.omega**2
         works, speeds = self._summed(cells, acting(self._train.loads, begin.mode.loads), at)
         for k in range(len(places) + 1):
@@ -114,7 +115,7 @@ class Cycles:
             self._speeds = np.append(self._speeds, speeds[k])
             if k < len(places):
                 before, after = _shares_beside(piece, float(marks[k]), sense)
-                here = _Open(places[k], float(at.time[k]), float(kinetic[k]), after)
+                here = _Open(places[k], float(time[k]), float(kinetic[k]), after)
                 self._close(here, before, float(at.omega[k]))
                 self._open, self._works = here, np.zeros_like(self._works)
                 self._speeds = at.omega[k : k + 1]

@@ -39,22 +39,24 @@ class Ending(Enum):
     STALLS = (
         1,
         "does not settle: what the crank gets in a period is less than what its loads take at any "
-        "lower speed, and it comes to a stop",
+        "lower speed, and it comes to a stop; give a smaller load, or one that grows with the "
+        "speed",
     )
     SLOWS_DOWN = (
         1,
         "does not settle: the loads take more in a period than the crank gets, and it stops at "
-        "{time:.6g} s, at {angle:.6g} degrees, where it {then}",
+        "{time:.6g} s, at {angle:.6g} degrees, where it {then}; give a smaller load, or one that "
+        "grows with the speed",
     )
     RUNS_AWAY = (
         1,
         "does not settle: what the crank gets in a period is more than what its loads take at any "
-        "higher speed, and its speed grows without bound",
+        "higher speed, and its speed grows without bound; give a load that grows with the speed",
     )
     BALANCED = (
         1,
         "does not settle: gas and loads balance one another at any speed, so that the motion from "
-        "the start repeats itself",
+        "the start repeats itself; a load that grows with the speed settles it",
     )
     HUNTS = (
         1,

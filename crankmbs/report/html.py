@@ -17,7 +17,7 @@ from crankmbs.measures.plausible import warnings
 from crankmbs.report.compared import advice, budget_table, comparison_table, left_out_lines
 from crankmbs.report.machine import machine_rows
 from crankmbs.report.readings import passed_at, reading_tables
-from crankmbs.report.rows import measure_tables, not_periodic, tables, unsteady
+from crankmbs.report.rows import cycle_remark, measure_tables, not_periodic, tables, unsteady
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 
@@ -46,6 +46,7 @@ def result_html(result: Result) -> str:
         ("formulation", result.formulation),
         *(("", reason) for reason in result.reasons),
         ("end", result.message),
+        *([("cycle", text)] if (text := cycle_remark(result.scene)) else []),
         *([("speed", text)] if (text := unsteady(result, measures)) else []),
         ("num. error", f"{error.estimated:.1e} relative, {error.asked:.0e} asked for"),
         *(("warning", text) for text in warnings(result.scene)),

@@ -12,6 +12,7 @@ from crankmbs.mechanics.geometry import dead_centres
 from crankmbs.mechanics.pressure import PeriodicPressure, crank_ends_of, pressures_of, remarks
 from crankmbs.mechanics.speed import speed_remarks
 from crankmbs.mechanics.windows import Phase, first_phases
+from crankmbs.report.rows import cycle_remark
 from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 from crankmbs.scene.force import PistonForce
@@ -58,6 +59,7 @@ def machine_rows(scene: Scene) -> list[tuple[str, str]]:
         *_unlike(scene, common),
         ("cylinders", _cylinders(scene)),
         ("gas", _gas(scene)),
+        *([("cycle", remark)] if (remark := cycle_remark(scene)) else []),
         *(("pressure", text) for text in _pressures(scene, heads, at_head)),
         *(("", text) for text in _pressures(scene, ends, "in the crank end")),
         *(("", remark) for remark in remarks(scene)),

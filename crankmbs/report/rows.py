@@ -23,6 +23,7 @@ from crankmbs.scene.scene import Scene
 __all__ = [
     "FORCE_HEADINGS",
     "Table",
+    "cycle_remark",
     "degrees_within",
     "labelled",
     "measure_rows",
@@ -111,6 +112,19 @@ def unsteady(result: Result, measures: Measures) -> str:
     return f"{why}; peaks are of {_part(result)}" if why else ""
 
 
+def cycle_remark(scene: Scene) -> str:
+    """What a cycle is in a machine without gas, in words; nothing with gas.
+
+    >>> cycle_remark(load_scene("propeller"))
+    ''
+    """
+    if scene.gas is not None:
+        return ""
+    return (
+        'two turns, 720 deg, in a machine without gas; an end such as "10 rev" counts single turns'
+    )
+
+
 def not_periodic(measures: Measures) -> str:
     """Why a window does not stand for the cycles after it; nothing where it does.
 
@@ -154,6 +168,8 @@ def _rows(
         ((power, error),) = estimates
         words = "brake power" if power > 0.0 else "drive power"
         estimates = (Estimate(abs(power), error),)
+    if name == "kinetic_power" and abs(estimates[0].value) <= estimates[0].error:
+        return []
     if name == "piston_speed":
         low, high = min(estimates).value, max(estimates).value
         estimates = estimates[:1] if high - low <= _SAME * high else estimates

@@ -20,7 +20,9 @@ from crankmbs.scene.schema import dimension_of
 from crankmbs.scene.sentences import did_you_mean
 from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.scene.units import quantity, unit_of
+from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.pressure_table import TABLE_KNOBS, TABLE_VALUES, table_at
+from crankmbs.sweep.reading import is_measure
 
 __all__ = ["DERIVED", "Interval", "Knob", "interval_of", "knob_of", "number_at"]
 
@@ -175,6 +177,11 @@ def _kind(scene: Scene, name: str) -> _Kind:
     try:
         place = field_at(scene, name)
     except InputError as error:
+        if is_measure(name, columns_of(scene, series=False)):
+            raise InputError(
+                f"{name}: is a measure, which follows from a case; vary what it depends on, such "
+                f'as crank.inertia, and draw over it: crankmbs plot SWEEP --over "{name}"'
+            ) from None
         near = did_you_mean(name, list(DERIVED))
         raise InputError(f"{error}{near}" if near else str(error)) from None
     if place is None:

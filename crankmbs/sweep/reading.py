@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from crankmbs.scene.scene import Scene
 
-__all__ = ["Reading", "amount_of", "check_free", "reading_of"]
+__all__ = ["Reading", "amount_of", "check_free", "is_measure", "reading_of"]
 
 _DEVIATION = "lecture_deviation"
 _LECTURES = {name.partition(" ")[0].lower(): name for name in LECTURES}  # "s1", "untruncated"
@@ -123,6 +123,20 @@ def reading_of(text: str, columns: Mapping[str, Column]) -> Reading:
         f"{shown(text)} is no measure of these cases{hint} are {', '.join(listed)}, and QUANTITY "
         "by S1"
     )
+
+
+def is_measure(text: str, columns: Mapping[str, Column]) -> bool:
+    """Whether `reading_of` knows it.
+
+    >>> from crankmbs.sweep.columns import columns_of
+    >>> is_measure("rod ratio", columns_of(load_scene("propeller"), series=False))
+    False
+    """
+    try:
+        reading_of(text, columns)
+    except InputError:
+        return False
+    return True
 
 
 def _key(words: str) -> frozenset[str]:
