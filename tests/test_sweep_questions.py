@@ -223,7 +223,7 @@ def test_two_knobs_are_contours_with_the_line_of_the_limit(grid):
         grid["lecture_deviation"].sel(quantity="side thrust")[..., 2].min()
     )
     assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()] == ["25 %"]
-    assert "by S1 (motion and forces truncated)" in figure.get_suptitle()
+    assert "by Yi et al., over its peak" in figure.get_suptitle()
     assert png(figure)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from crankmbs.compare import LECTURES, QUANTITIES
+from crankmbs.compare import LECTURES, QUANTITIES, short_name
 from crankmbs.errors import InputError, shown
 from crankmbs.measures import Estimate
 from crankmbs.scene.sentences import did_you_mean
@@ -41,7 +41,7 @@ class Reading(NamedTuple):
         """What a reader is told it is."""
         if not self.lecture:
             return self.about.long_name
-        return f"largest error of {self.quantity} by {self.lecture}, over its peak"
+        return f"largest error of {self.quantity} by {short_name(self.lecture)}, over its peak"
 
     def of_row(self, row: Row) -> Estimate:
         """It in one case, with its error; NaN where the case has none."""
