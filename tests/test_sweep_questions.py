@@ -227,6 +227,18 @@ def test_two_knobs_are_contours_with_the_line_of_the_limit(grid):
     assert png(figure)
 
 
+def test_labels_of_contours_are_clear_of_the_edges_and_of_one_another(grid):
+    for show in ("side thrust by S1", "fluctuation", "mean speed"):
+        figure = sweep_figure(grid, show)
+        figure.draw_without_rendering()
+        ax = figure.axes[0]
+        boxes = [text.get_window_extent() for text in ax.texts]
+        assert len(boxes) > 2
+        for number, box in enumerate(boxes):
+            assert ax.bbox.count_contains(box.corners()) == 4
+            assert not any(box.overlaps(other) for other in boxes[:number])
+
+
 def test_three_knobs_are_small_multiples():
     vary = {"rod_ratio": "0.2..0.4:2", "piston.mass": "1..2 kg:2", "motion.speed": "1e3..3e3 rpm:3"}
     scene = load_scene("yi_diesel").with_(run__until="1 cycles")
