@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 import crankmbs.figures.compare as drawing
 from crankmbs import Run, budget, compare, load_scene, simulate
 from crankmbs.cli import app
-from crankmbs.compare import CAUSES, CLOSED_FORM, LECTURES, QUANTITIES
+from crankmbs.compare import CAUSES, CLOSED_FORM, LECTURES, QUANTITIES, short_name
 from crankmbs.figures import budget_figure, comparison_figure
 
 pytestmark = pytest.mark.slow
@@ -89,7 +89,7 @@ def test_the_causes_add_up_to_the_largest_error(diesel):
     found = causes_of(diesel[0])
     thrust = found["side thrust [N]"]
     assert thrust["error [%]"] == "-16.31"
-    assert (thrust["at [deg]"], thrust["S0 [%]"]) == ("658", "15.59")
+    assert (thrust["at [deg]"], thrust["Grega [%]"]) == ("658", "15.59")
     assert list(found)[:2] == ["side thrust [N]", "piston pin force y [N]"]
     for row in found.values():
         parts = [float(row[name]) for name in ("series", "two-mass rod")]
@@ -115,7 +115,7 @@ def test_it_says_what_the_closed_form_is_evaluated_at_and_whose_error_is_largest
 def test_verbose_has_every_reference_and_the_largest_of_each_cause(diesel):
     text, _ = diesel
     for reference in (CLOSED_FORM, *LECTURES):
-        assert f"{reference.partition(' (')[0]} [%]" in text
+        assert f"{short_name(reference)} [%]" in text
     for quantity, about in QUANTITIES.items():
         assert text.count(f"\n{quantity} [{about.units}] ") == 2
     words = " ".join(text.split())
@@ -214,8 +214,8 @@ def test_a_comparison_figure_has_the_run_above_and_the_errors_below(four):
     tops, bottoms = figure.axes[:2], figure.axes[2:]
     s1 = list(LECTURES)[-1]
     assert list(curves(tops[1])) == ["run"]
-    assert list(curves(bottoms[0])) == ["S0 and S1"]  # they differ in forces alone
-    assert list(curves(bottoms[1])) == ["S0", "S1"]
+    assert list(curves(bottoms[0])) == ["Grega and Yi et al."]  # they differ in forces alone
+    assert list(curves(bottoms[1])) == ["Grega", "Yi et al."]
     for ax, quantity, scale in (
         (tops[0], "piston displacement", 1e3),
         (tops[1], "side thrust", 1e-3),
@@ -223,7 +223,7 @@ def test_a_comparison_figure_has_the_run_above_and_the_errors_below(four):
         drawn = curves(ax)["run"].get_ydata()
         assert np.allclose(drawn, comparison.simulated[quantity] * scale, rtol=1e-12)
     row = comparison.row("side thrust", s1)
-    error = curves(bottoms[1])["S1"].get_ydata()
+    error = curves(bottoms[1])["Yi et al."].get_ydata()
     assert np.allclose(error, 100.0 * row.error / row.peak, rtol=1e-12)
     labels = ["[mm]", "[kN]", "error [% of peak]", "error [% of peak]"]
     assert [ax.get_ylabel() for ax in (*tops, *bottoms)] == labels
@@ -256,10 +256,10 @@ def test_the_curves_of_a_budget_figure_add_up_to_the_thick_one(four):
     assert list(drawn) == ["series", "constant speed", "two-mass rod"]
     assert np.allclose(sum(drawn.values()), total, rtol=0.0, atol=1e-12)
     legend = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert legend == ["run", "lecture", "sum of the causes", *drawn]
+    assert legend == ["run", "formula of Yi et al.", "sum of the causes", *drawn]
     assert "too small: datum, gravity, solver" in figure.get_supxlabel()
     above = {label: line.get_ydata() for label, line in curves(top).items()}
-    share = 100.0 * (above["lecture"] - above["run"]) / np.max(np.abs(above["run"]))
+    share = 100.0 * (above["formula of Yi et al."] - above["run"]) / np.max(np.abs(above["run"]))
     assert np.allclose(share, total, rtol=0.0, atol=1e-11)
     degrees = curves(bottom)["series"].get_xdata()
     assert (degrees[0], degrees[-1]) == pytest.approx((0.0, 720.0))
@@ -274,7 +274,7 @@ def test_a_slide_is_headed_by_its_largest_error_with_its_number(four):
     worst = split.split("side thrust")
     share, at = worst.share(worst.total), math.degrees(worst.total.size.angle)
     assert headline_of(budget_figure(split, ("rod force", "side thrust"))) == [
-        f"Side thrust: the lecture is off by up to {share:.1f} %",
+        f"Side thrust: error of Yi et al. up to {share:.1f} %",
         f"of the peak, at {at:.0f} degrees; the two-mass rod costs up to "
         f"{worst.share(worst.cause('two-mass rod')):.1f} %",
     ]
@@ -285,7 +285,7 @@ def test_a_slide_is_headed_by_its_largest_error_with_its_number(four):
     )
     share = 100.0 * row.size.largest / row.peak
     first, second = headline_of(comparison_figure(comparison, ("rod force", "side thrust")))
-    assert first == f"Side thrust: {row.reference.split(' (')[0]} is off by up to {share:.1f} %"
+    assert first == f"Side thrust: error of {short_name(row.reference)} up to {share:.1f} %"
     assert second.startswith(f"of the peak, at {math.degrees(row.size.angle):.0f} degrees")
 
 

@@ -12,6 +12,7 @@ from crankmbs.figures import (
     crank_pin_figure,
     forces_figure,
     last_view,
+    machine_figure,
     main_bearing_figure,
     piston_motion_figure,
     piston_pin_figure,
@@ -123,6 +124,23 @@ def test_the_error_of_a_caption_is_that_of_the_worst_variable_where_it_is_drawn(
     assert exactness(variables, "speed", "pin", "none").endswith("at most 0.10 % of the peak")
     variables["alone"] = of([1.0], math.inf)
     assert exactness(variables, "speed", "alone") == "numerical error unknown"
+
+
+@pytest.mark.parametrize("name", ["coasting", "v_twin", "yi_diesel_free"])
+def test_the_caption_of_a_machine_is_within_its_figure_and_every_cut_says_whose_it_is(name):
+    figure = machine_figure(load_scene(name))
+    figure.draw_without_rendering()
+    caption = figure.texts[-1].get_window_extent()
+    assert 0.0 < caption.x0 < caption.x1 < figure.bbox.width
+    titles = [ax.get_title() for ax in figure.axes]
+    assert (
+        titles
+        == {
+            "coasting": [""],
+            "v_twin": ["cylinders 1, 2"],
+            "yi_diesel_free": [f"cylinder {number}" for number in range(1, 5)],
+        }[name]
+    )
 
 
 def test_a_legend_is_no_wider_than_its_figure():

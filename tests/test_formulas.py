@@ -255,19 +255,26 @@ def test_the_figure_draws_a_formula_beside_the_others(four):
         [line.get_label() for line in ax.lines if line.get_label()[0] != "_"]
         for ax in (speeds, thrusts, *below)
     ]
-    assert drawn == [["run"], ["run"], ["crank speed"], ["S0", "S1", "my thrust"]]
+    assert drawn == [["run"], ["run"], ["crank speed"], ["Grega", "Yi et al.", "my thrust"]]
     assert speeds.get_ylim()[0] > 300.0  # no line at zero, or the swing could not be seen
     legend = [text.get_text() for text in figure.legends[0].get_texts()]
     assert {"my thrust", "crank speed"} <= set(legend)
     assert speeds.get_ylabel() == "[rad/s]"
 
 
-def test_the_caption_names_the_authors_of_the_formulas_drawn_and_no_others(four):
+def test_the_legend_names_the_authors_of_the_formulas_drawn_and_no_others(four):
     found = compare(four, {"crank speed": lambda theta, mean_omega: mean_omega})
-    captions = [
-        comparison_figure(found, (name,)).get_supxlabel()
+    figures = [
+        comparison_figure(found, (name,))
         for name in ("crank speed", "side thrust", "piston displacement")
     ]
-    assert "S0" not in captions[0]
-    for caption in captions[1:]:
-        assert "formula minus run; S0: Grega; S1: Yi, Win and Htay" in caption
+    legends = [[text.get_text() for text in figure.legends[0].get_texts()] for figure in figures]
+    assert legends == [
+        ["run", "crank speed"],
+        ["run", "Grega", "Yi et al."],
+        ["run", "Grega and Yi et al."],
+    ]
+    for figure in figures:
+        caption = figure.get_supxlabel()
+        assert "error: formula minus run" in caption
+        assert "over the last cycle; numerical error at most" in caption

@@ -309,7 +309,7 @@ def test_two_knobs_are_contours_with_the_line_of_the_limit(grid):
         grid["lecture_deviation"].sel(quantity="side thrust")[..., 2].min()
     )
     assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()] == ["25 %"]
-    assert "by S1 (motion and forces truncated)" in figure.get_suptitle()
+    assert "by Yi et al., over its peak" in figure.get_suptitle()
     assert png(figure)
 
 
@@ -334,6 +334,18 @@ def test_who_varies_a_measure_is_told_the_way(tmp_path):
     text = refused("sweep", "propeller", *vary, "-o", str(tmp_path / "s.zarr"))
     assert "fluctuation: is a measure, which follows from a case; vary what it depends on" in text
     assert 'crankmbs plot SWEEP --over "fluctuation"' in text
+
+
+def test_labels_of_contours_are_clear_of_the_edges_and_of_one_another(grid):
+    for show in ("side thrust by S1", "fluctuation", "mean speed"):
+        figure = sweep_figure(grid, show)
+        figure.draw_without_rendering()
+        ax = figure.axes[0]
+        boxes = [text.get_window_extent() for text in ax.texts]
+        assert len(boxes) > 2
+        for number, box in enumerate(boxes):
+            assert ax.bbox.count_contains(box.corners()) == 4
+            assert not any(box.overlaps(other) for other in boxes[:number])
 
 
 def test_three_knobs_are_small_multiples():

@@ -12,7 +12,7 @@ from crankmbs.compare.excerpt import Excerpt, LeftOut, check_comparable
 from crankmbs.compare.files import save_budget, save_budget_peaks, save_comparison, save_numbers
 from crankmbs.compare.formula import CLOSED_FORM, Formula, formulas_of
 from crankmbs.compare.largest import largest_deviations
-from crankmbs.compare.lectured import LECTURES
+from crankmbs.compare.lectured import LECTURES, short_name
 from crankmbs.compare.numbers import NUMBERS, Number
 from crankmbs.compare.quantities import OBSERVABLES, QUANTITIES, Quantity
 from crankmbs.compare.size import Size, percent
@@ -54,4 +54,5 @@ __all__ = [
     "save_budget_peaks",
     "save_comparison",
     "save_numbers",
+    "short_name",
 ]

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from crankmbs.compare.excerpt import Excerpt
-from crankmbs.compare.lectured import LECTURES
+from crankmbs.compare.lectured import LECTURES, short_name
 from crankmbs.compare.numbers import NUMBERS
 from crankmbs.compare.quantities import OBSERVABLES, QUANTITIES
 from crankmbs.compare.words import WORDS, Words
@@ -32,7 +32,7 @@ _WORDS_OF_RESULT = {
     "crank_acceleration": "alpha",
 }  # names of a result, and the words for them
 _NAMES_LISTED = f"{', '.join((*QUANTITIES, *NUMBERS))}, and the variables of a result"
-_RESERVED_LABELS = ("run", "lecture", CLOSED_FORM, *LECTURES)
+_RESERVED_LABELS = ("run", CLOSED_FORM, *LECTURES, *map(short_name, LECTURES))
 _LIFTED_BY = {
     "constant speed": {"omega", "alpha"},
     "two-mass rod": {"rod_inertia", "reduced_inertia", "reduced_slope"},

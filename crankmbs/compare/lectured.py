@@ -29,6 +29,7 @@ __all__ = [
     "RodForces",
     "lectured",
     "quantities_by",
+    "short_name",
 ]
 
 
@@ -111,6 +112,18 @@ LECTURES = {
     "S1 (motion and forces truncated)": S1,
 }
 """The lectures' formulas by the names under which they are compared; the last truncates most."""
+
+_, *_TRUNCATED = LECTURES
+_AUTHORS = dict(zip(_TRUNCATED, ("Grega", "Yi et al."), strict=True))
+
+
+def short_name(reference: str) -> str:
+    """What a reference is called in a heading, a headline and a legend: its authors or its label.
+
+    >>> short_name("S0 (motion truncated)"), short_name("closed form")
+    ('Grega', 'closed form')
+    """
+    return _AUTHORS.get(reference, reference)
 
 
 def lectured(

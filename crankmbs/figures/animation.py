@@ -23,7 +23,7 @@ from crankmbs.figures.frames import Frames, frames_of
 from crankmbs.figures.machines import Machine, at_frames, shown_forces
 from crankmbs.figures.mechanism import slices
 from crankmbs.figures.outline import mechanism
-from crankmbs.figures.style import STYLE, caption, crank_axis, line_of
+from crankmbs.figures.style import STYLE, caption, crank_axis, line_of, whose
 from crankmbs.figures.view import View, last_view
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
@@ -150,12 +150,11 @@ class _Film:
         _speed_axis(trace, view, frames.mean, forces)
         if len(result.scene.cylinders) > 1:
             for ax, cut in zip(machines, cuts, strict=True):
-                ax.set_title(", ".join(str(k + 1) for k in cut))
+                ax.set_title(whose(cut))
         title = textwrap.shorten(result.scene.title, _TITLE, placeholder=" ...")
         self._figure.suptitle(title, fontsize=16, fontweight="bold", parse_math=False)
-        caption(
-            self._figure, [f"{view.window.kind}, {frames.pace} ({result.formulation})", frames.ring]
-        )
+        exact = f"speed: {view.exactness('crank_speed')}"
+        caption(self._figure, [f"{view.window.kind}, {frames.pace}; {exact}", frames.ring])
         canvas.draw()
         still = np.array(canvas.buffer_rgba())  # text takes most of a frame's time
         self._figure.set_layout_engine(None)  # it stays as it is now

@@ -22,11 +22,12 @@ from crankmbs.compare import (
     Deviation,
     Excerpt,
     Split,
+    short_name,
 )
 from crankmbs.figures.headline import budget_headline, comparison_headline
 from crankmbs.figures.slide import SLIDE, slide, slide_legend
 from crankmbs.figures.style import crank_axis, footer, force_scale, grouped, line_of, save
-from crankmbs.figures.view import last_view
+from crankmbs.figures.view import error_words, last_view
 from crankmbs.numerics.arrays import Array
 from crankmbs.storage.files import together
 
@@ -47,17 +48,18 @@ FAMILIES = {
 """The quantities that a slide shows, one or two side by side, by its name."""
 
 _SHOWN = {"m": (1e-3, "mm"), "m/s^2": (1.0, "m/s$^2$")}  # unit -> divisor and unit on an axis
-_UNTRUNCATED, *_ = LECTURES
-_AUTHORS = {"S0": "Grega", "S1": "Yi, Win and Htay"}
+_UNTRUNCATED, *_TRUNCATED = LECTURES
+_GREGA, _YI = map(short_name, _TRUNCATED)
+_BY_YI = f"formula of {_YI}"
 _ABSENT = 1e-9  # of the error: a peak so small has no percent
 _APART = 0.02  # of the larger: curves nearer than this are one line
 _UNSEEN = 1e-3  # of the largest of a panel's causes: no line can be told from zero
 _STYLES: dict[str, dict[str, Any]] = {
     "run": {"color": "black", "linewidth": 3.0},
-    "lecture": {"color": "0.5", "linestyle": (0, (4, 2))},
+    _BY_YI: {"color": "0.5", "linestyle": (0, (4, 2))},
     "sum of the causes": {"color": "0.65", "linewidth": 7.0},
-    **{name: line_of(k) for k, name in enumerate(("S0", "S1", CLOSED_FORM, _UNTRUNCATED))},
-    "S0 and S1": line_of(0) | {"color": line_of(2)["color"]},
+    **{name: line_of(k) for k, name in enumerate((_GREGA, _YI, CLOSED_FORM, _UNTRUNCATED))},
+    f"{_GREGA} and {_YI}": line_of(0) | {"color": line_of(2)["color"]},
     **{name: line_of(k) for k, name in enumerate((*CAUSES, REST))},
 }
 _USER = 5  # the first line for formulas of the user: dashed, of a colour that no reference has
@@ -111,10 +113,7 @@ def comparison_figure(comparison: Comparison, quantities: tuple[str, ...]) -> Fi
         columns.append((name, {"run": comparison.simulated[name]}, _errors(truncated or rows)))
     independent = comparison.excerpt.result.formulation == "multibody"
     headline = comparison_headline(every, independent=independent)
-    drawn = {name for *_, errors in columns for label in errors for name in label.split(" and ")}
-    authors = [f"{name}: {author}" for name, author in _AUTHORS.items() if name in drawn]
-    about = "; ".join(["error: formula minus run", *authors])
-    return _figure(comparison.excerpt, columns, headline, about)
+    return _figure(comparison.excerpt, columns, headline, "error: formula minus run")
 
 
 def _errors(rows: list[Deviation]) -> dict[str, Array]:
@@ -124,7 +123,7 @@ def _errors(rows: list[Deviation]) -> dict[str, Array]:
         return bool(np.max(np.abs(first.error - row.error)) <= _APART * row.size.largest)
 
     return {
-        " and ".join(row.reference.partition(" (")[0] for row in group): group[0].error
+        " and ".join(short_name(row.reference) for row in group): group[0].error
         for group in grouped(rows, coincide)
     }
 
@@ -149,18 +148,17 @@ def budget_figure(
     ]
     if not splits:
         return None
-    source = "lecture" if reference is None else "formula"
     columns = [
         (
             split.quantity,
-            {"run": split.simulated, reference or "lecture": split.values},
+            {"run": split.simulated, reference or _BY_YI: split.values},
             {"sum of the causes": split.total.curve, **_seen(split)},
         )
         for split in splits
     ]
     drawn = {label for _, _, errors in columns for label in errors}
     unseen = [cause.name for cause in splits[0].causes if cause.name not in drawn]
-    about = f"error: {source} minus run, and its causes"
+    about = "error: formula minus run, and its causes"
     if unseen:
         about += f" (too small: {', '.join(unseen)})"
     return _figure(budget.excerpt, columns, budget_headline(splits), about)
@@ -207,7 +205,8 @@ def _figure(
     grid.set_height_ratios((1.0, 2.0))
     figure.align_ylabels(axes)
     of = f", cylinder {excerpt.cylinder}" if of_one else ""
-    footer(figure, excerpt.result, f"{about}{of}")
+    exact = error_words(excerpt.result.error.estimated)
+    footer(figure, excerpt.result, f"{about}{of}, over the {view.window.kind}", exact)
     return figure
 
 

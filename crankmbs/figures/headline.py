@@ -5,7 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from crankmbs.compare import CLOSED_FORM, LECTURES, OBSERVABLES, Deviation, Split, percent
+from crankmbs.compare import (
+    CLOSED_FORM,
+    LECTURES,
+    OBSERVABLES,
+    Deviation,
+    Split,
+    percent,
+    short_name,
+)
 from crankmbs.digits import digits
 
 __all__ = ["budget_headline", "comparison_headline"]
@@ -22,11 +30,11 @@ def comparison_headline(rows: Sequence[Deviation], *, independent: bool) -> tupl
     lectures = [row for row in rows if row.reference != CLOSED_FORM] or rows
     row = max(lectures, key=lambda each: _weight(_share(each)))
     lecture = row.reference in (CLOSED_FORM, *LECTURES)
-    name = row.reference.partition(" (")[0] if lecture else _FORMULA
+    name = short_name(row.reference) if lecture else _FORMULA
     if math.isnan(_share(row)):
         size = f"{digits(row.size.largest, most=3)} {OBSERVABLES[row.quantity].units}"
         return f"{_capital(row.quantity)}: the run has none, {name} up to {size}", ""
-    first = f"{_capital(row.quantity)}: {name} is off by up to {_percent(_share(row))}"
+    first = f"{_capital(row.quantity)}: error of {name} up to {_percent(_share(row))}"
     second = _where(row.size.angle) + ("" if lecture else f": {row.reference}")
     shares = [_share(each) for each in rows if each.reference == CLOSED_FORM]
     if independent and not any(map(math.isnan, shares)):
@@ -38,14 +46,14 @@ def budget_headline(splits: Sequence[Split]) -> tuple[str, str]:
     """The formula's largest error, and the cause that is worth most."""
     split = max(splits, key=lambda each: _weight(each.share(each.total)))
     share, quantity = split.share(split.total), _capital(split.quantity)
-    formula = "the lecture" if split.is_lecture else _FORMULA
+    formula = short_name(split.reference) if split.is_lecture else _FORMULA
     if math.isnan(share):
         return f"{quantity}: the run has none, {formula} has", ""
     if share == 0.0:
-        return f"{quantity}: {formula} is right but for rounding", ""
+        return f"{quantity}: no error of {formula} but for rounding", ""
     cause = max(split.causes, key=split.share)
     worth = f"{split.named(cause)} costs up to {_percent(split.share(cause))}"
-    first = f"{quantity}: {formula} is off by up to {_percent(share)}"
+    first = f"{quantity}: error of {formula} up to {_percent(share)}"
     return first, f"{_where(split.total.size.angle)}; {worth}"
 
 

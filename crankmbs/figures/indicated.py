@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from pathlib import Path, PurePath
 
 import numpy as np
@@ -10,7 +9,6 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from crankmbs.figures.style import (
-    COLOURS,
     STYLE,
     caption,
     legend,
@@ -43,11 +41,9 @@ def pressure_figure(indicated: Indicated) -> Figure:
     ax.set_xlabel("crank angle from the firing dead centre [deg]")
     ax.set_ylabel(_pressure(indicated))
     legend(figure, ax)
-    _footer(
-        figure,
-        indicated,
-        "mean cycles, and the band of all" if _several(indicated) else "the cycle",
-    )
+    about = f"{_which(indicated)} of each cylinder"
+    band = "; band: least to largest of its cycles" if _several(indicated) else ""
+    _footer(figure, indicated, about + band)
     return figure
 
 
@@ -67,7 +63,7 @@ def volume_figure(indicated: Indicated) -> Figure:
         axes[0].plot(shape.travel(angle), mean, **line_of(k), label=label)
         if with_log:
             axes[1].loglog(shape.volume(angle), np.maximum(mean, 1e-3), **line_of(k))
-    axes[0].set_xlabel("piston travel over the stroke [1]")
+    axes[0].set_xlabel("piston displacement from TDC over the stroke [1]")
     axes[0].set_ylabel(_pressure(indicated))
     if with_log:
         axes[1].set_xlabel("volume over the clearance volume [1]")
@@ -76,7 +72,8 @@ def volume_figure(indicated: Indicated) -> Figure:
     handles, labels = axes[0].get_legend_handles_labels()
     columns = 2 if with_log and len(labels) > 1 else 1
     figure.legend(handles, labels, loc="outside upper center", ncols=columns)
-    _footer(figure, indicated, "mean cycles")
+    about = f"{_which(indicated)} of each cylinder; imep: indicated mean effective pressure"
+    _footer(figure, indicated, about)
     return figure
 
 
@@ -87,18 +84,21 @@ def scatter_figure(indicated: Indicated) -> Figure:
     figure, axes = panels(1 + with_imep, 1, 10.0, 3.2 * (1 + with_imep))
     for k, each in enumerate(indicated.cylinders):
         number = np.arange(1, len(each.pressure) + 1)
-        colour = COLOURS[k % len(COLOURS)]
-        axes[0].plot(number, each.peaks / BAR, ".-", color=colour, lw=0.8, label=_name(each))
+        line = line_of(k) | {"marker": ".", "linewidth": 0.8}
+        axes[0].plot(number, each.peaks / BAR, **line, label=_name(each))
         if with_imep:
             assert each.imep is not None
-            axes[1].plot(number, each.imep / BAR, ".-", color=colour, lw=0.8)
+            axes[1].plot(number, each.imep / BAR, **line)
     axes[0].set_ylabel("peak pressure [bar]")
     if with_imep:
         axes[1].set_ylabel("indicated mean\neffective pressure [bar]")
+    for ax in axes:
+        ax.locator_params("x", integer=True)
     axes[-1].set_xlabel("cycle")
     figure.align_ylabels(axes)
     legend(figure, axes[0])
-    _footer(figure, indicated, "cycle by cycle")
+    about = "peak and mean effective pressure" if with_imep else "peak pressure"
+    _footer(figure, indicated, f"{about} of each measured cycle")
     return figure
 
 
@@ -113,7 +113,7 @@ def save_indicated_figures(indicated: Indicated, folder: Path, stem: str) -> lis
     draw = {"angle": pressure_figure}
     if indicated.shape is not None:
         draw["pv"] = volume_figure
-    if any(len(each.pressure) > 1 for each in indicated.cylinders):
+    if _several(indicated):
         draw["cycles"] = scatter_figure
     with together(folder) as part:
         for name, figure in draw.items():
@@ -125,6 +125,10 @@ def _several(indicated: Indicated) -> bool:
     return any(len(each.pressure) > 1 for each in indicated.cylinders)
 
 
+def _which(indicated: Indicated) -> str:
+    return "mean cycle" if _several(indicated) else "measured cycle"
+
+
 def _name(cylinder: CylinderPressure) -> str:
     return f"cylinder {cylinder.number}"
 
@@ -134,6 +138,4 @@ def _pressure(indicated: Indicated) -> str:
 
 
 def _footer(figure: Figure, indicated: Indicated, about: str) -> None:
-    name = PurePath(indicated.source).name
-    lines = textwrap.wrap(name, 80, max_lines=1, placeholder=" ...")
-    caption(figure, [*lines, about])
+    caption(figure, [PurePath(indicated.source).name, about])

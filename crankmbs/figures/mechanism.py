@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon
 
 from crankmbs.figures.outline import Mechanism, mechanism
-from crankmbs.figures.style import STYLE, caption, line_of, tiles
+from crankmbs.figures.style import STYLE, caption, line_of, tiles, whose
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
@@ -140,6 +140,6 @@ def machine_figure(scene: Scene) -> Figure:
     for ax, cut in zip(axes, cuts, strict=True):
         Drawing(ax, parts, cut)
         if len(scene.cylinders) > 1:
-            ax.set_title(", ".join(str(k + 1) for k in cut))
-    caption(figure, ["X upwards, Y to the left, to scale, where the run begins"])
+            ax.set_title(whose(cut))
+    caption(figure, ["to scale, at the start of the run", "X upwards, Y to the left"])
     return figure

@@ -267,7 +267,7 @@ def legend_grid(labels: Sequence[str], figure: Figure) -> tuple[int, int]:
 
 def footer(figure: Figure, result: Result, about: str, exact: str = "") -> None:
     """Say under the figure which run it shows, what of it, over what window, and how exact."""
-    by = ", by exudyn's rigid bodies" if result.formulation == "multibody" else ""
+    by = " (run by exudyn's rigid bodies)" if result.formulation == "multibody" else ""
     ending = f"; {exact}" if exact else ""
     caption(figure, [result.scene.title, f"{about}{by}{ending}"])
 

@@ -33,6 +33,7 @@ _COLUMNS = 3
 _SIZES = (4.6, 4.2), (9.0, 6.5)  # inch: of a panel, and of the smallest figure
 _LEVELS = 12
 _ROUND = [1, 2, 5, 10]  # steps of ticks and levels, times a power of ten
+_EDGE = 0.06  # of a panel's side: the room that the label of a contour takes
 _CELLS = 500  # along an axis: finer than the points that are drawn
 
 
@@ -119,7 +120,7 @@ def sweep_figure(
         figure = _over_each(data, drawn, names, joined=bool(knobs))
     figure.suptitle(drawn.label, fontsize=14)
     missing = int(np.count_nonzero(np.isnan(values.values)))
-    lines = [str(data.attrs.get("title", "")), f"{values.size} cases; error at most "]
+    lines = [str(data.attrs.get("title", "")), f"{values.size} cases; numerical error at most "]
     lines[1] += f"{error_digits(error / scale)} {unit}"
     lines[1] += f"; {missing} have none and are left white" if missing else ""
     if at is not None and not np.nanmin(drawn.values) <= at <= np.nanmax(drawn.values):
@@ -186,20 +187,42 @@ def _over(data: xr.Dataset, drawn: _Drawn, knobs: list[str]) -> Figure:
 
 def _contours(ax: Axes, at: tuple[_Axis, _Axis], drawn: _Drawn, levels: Array) -> Any:
     (x, y), table, limit = at, np.ma.masked_invalid(drawn.values), drawn.limit
-    places = np.broadcast_arrays(x.at, y.at[:, None])
+    grid = np.broadcast_arrays(x.at, y.at[:, None])
     ax.set_facecolor("white")
     ax.grid(visible=False)
-    filled = ax.contourf(*places, table, levels, cmap="viridis")
+    filled = ax.contourf(*grid, table, levels, cmap="viridis")
     inks = ["white" if level < np.mean(levels) else "black" for level in levels]
-    lines = ax.contour(*places, table, levels, colors=inks, linewidths=0.6)
-    ax.clabel(lines, fmt=lambda level: f"{level:.6g}", fontsize=11)
+    lines = ax.contour(*grid, table, levels, colors=inks, linewidths=0.6)
     if limit is not None and levels[0] < limit < levels[-1]:
-        ax.contour(*places, table, [limit], colors=COLOURS[1])
+        ax.contour(*grid, table, [limit], colors=COLOURS[1])
         ax.plot([], [], color=COLOURS[1], label=_amount(drawn))  # beside it, it is cut at an edge
         ax.legend(loc="upper right")
     x.along(ax.xaxis)
     y.along(ax.yaxis)
+    parts = [part for path in lines.get_paths() for part in path.to_polygons(closed_only=False)]
+    places = _places(ax, list(map(np.asarray, parts)))
+    ax.clabel(lines, manual=places, fmt=lambda level: f"{level:.6g}", fontsize=11)
     return filled
+
+
+def _places(ax: Axes, lines: list[Array]) -> list[tuple[float, float]]:
+    """Where the labels of contours stand: in the middle of what is clear of the edges, none beside
+    another.
+
+    lines : each of shape (n, 2), in the units of the axes
+    """
+    to_axes = ax.transScale + ax.transLimits
+    places: list[tuple[float, float]] = []
+    taken: list[Array] = []
+    for line in lines:
+        points = to_axes.transform(line)
+        inside = np.flatnonzero(np.all(np.abs(points - 0.5) < 0.5 - _EDGE, axis=1))
+        if len(inside) and np.max(np.ptp(points, axis=0)) > 2.0 * _EDGE:
+            k = inside[len(inside) // 2]
+            if all(np.max(np.abs(points[k] - other)) > _EDGE for other in taken):
+                taken.append(points[k])
+                places.append((float(line[k, 0]), float(line[k, 1])))
+    return places
 
 
 def _amount(drawn: _Drawn) -> str:

@@ -17,7 +17,7 @@ from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["Plane", "View", "exactness", "last_view", "over_time"]
+__all__ = ["Plane", "View", "error_words", "exactness", "last_view", "over_time"]
 
 _SAME = 0.5  # deg: dead centres closer than this share one line
 _THERE = 1e-6  # deg: a cycle that begins so near to where the axis does is drawn in one piece
@@ -215,9 +215,14 @@ def exactness(variables: Labelled, *names: str, first: int = 0) -> str:
         peak = max(float(np.max(np.abs(values[first:]))) for _, values, _ in rows)
         if peak > 0.0:
             shares.append(max(float(about["error_estimate"]) for *_, about in rows) / peak)
-    if not np.all(np.isfinite(shares)):
+    return error_words(float(np.max(shares)))
+
+
+def error_words(share: float) -> str:
+    """A numerical error relative to the peak, in words."""
+    if not math.isfinite(share):
         return "numerical error unknown"
-    return f"numerical error at most {error_digits(100.0 * max(shares))} % of the peak"
+    return f"numerical error at most {error_digits(100.0 * share)} % of the peak"
 
 
 def over_time(result: Result, first: int = 0) -> dict[str, Array]:

@@ -56,7 +56,10 @@ def work_precision_figure(outcome: WorkPrecision) -> Figure:
             ax.set_ylabel("wall time [s]")
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=min(len(labels), 5))
-    caption(figure, [outcome.reference.result.scene.title, *outcome.machine])
+    about = "wall time over relative error, lower and further left is better"
+    grey = "grey: less than the numerical error of the reference, points are drawn at its edge"
+    title = outcome.reference.result.scene.title
+    caption(figure, [title, f"{about}; {grey}", *outcome.machine])
     return figure
 
 

@@ -8,7 +8,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from crankmbs.compare import LECTURES, OBSERVABLES, Budget, Comparison, LeftOut, Split, percent
+from crankmbs.compare import (
+    LECTURES,
+    OBSERVABLES,
+    Budget,
+    Comparison,
+    LeftOut,
+    Split,
+    percent,
+    short_name,
+)
 from crankmbs.digits import digits
 from crankmbs.mechanics.peaks import peak, relative_errors
 from crankmbs.mechanics.variables import EVERY
@@ -46,7 +55,7 @@ def budget_table(splits: Sequence[Split], comparison: Comparison | None = None) 
 
     Quantities that are right within 0.005 % have no row, causes that add less nowhere no column.
 
-    comparison : of the same run; adds the largest error of S0 as a last column
+    comparison : of the same run; adds the largest error of Grega's formula as a last column
     """
     shown = [split for split in splits if not _right(split)]
     parts = [split.at_largest() for split in shown]
@@ -64,7 +73,7 @@ def budget_table(splits: Sequence[Split], comparison: Comparison | None = None) 
         rows.append([*row, *([] if comparison is None else [_beside(comparison, split.quantity)])])
     headings = ["quantity", "peak", "error [%]", "at [deg]"]
     headings += [name if name != "series" or splits[0].is_lecture else "formula" for name in causes]
-    return Table([*headings, *([] if comparison is None else ["S0 [%]"])], rows)
+    return Table([*headings, *([] if comparison is None else [f"{short_name(_S0)} [%]"])], rows)
 
 
 def exact_words(splits: Sequence[Split]) -> str:
@@ -110,7 +119,7 @@ def comparison_table(comparison: Comparison) -> Table:
         )
         where = f"{math.degrees(last.size.angle):.0f}"
         rows.append([_with_unit(quantity), digits(peak, most=4), *shares, where])
-    names = [name.partition(" (")[0] for name in references]
+    names = map(short_name, references)
     headings = ["quantity", "peak", *(f"{name} [%]" for name in names), "at [deg]"]
     return Table(headings, rows)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from crankmbs.compare import LECTURES, QUANTITIES
+from crankmbs.compare import LECTURES, QUANTITIES, short_name
 from crankmbs.errors import InputError, shown
 from crankmbs.measures import Estimate
 from crankmbs.scene.units import quantity
@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 __all__ = ["Reading", "amount_of", "check_free", "is_measure", "reading_of"]
 
 _DEVIATION = "lecture_deviation"
-_LECTURES = {name.partition(" ")[0].lower(): name for name in LECTURES}  # "s1", "untruncated"
+_LECTURES = {
+    key.partition(" ")[0].lower(): name for name in LECTURES for key in (name, short_name(name))
+}  # "untruncated", "yi", and by key of the bibliography "s1"
 _DIMENSIONS = {"N": "force", "N m": "torque", "Pa": "pressure", "W": "power"}
 _DIMENSIONS |= {"rad": "angle", "rad/s": "angular speed", "m/s": "speed"}
 _SHARE = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(%?)\s*")
@@ -49,7 +51,7 @@ class Reading(NamedTuple):
     def words(self) -> str:
         """What a reader is told it is."""
         if self.lecture:
-            return f"largest error of {self.quantity} by {self.lecture}, over its peak"
+            return f"largest error of {self.quantity} by {short_name(self.lecture)}, over its peak"
         return f"{self.about.long_name}{f', {self.number}' if self.number else ''}"
 
     def of_row(self, row: Row) -> Estimate:
