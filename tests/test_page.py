@@ -118,7 +118,7 @@ def test_a_load_that_settles_nothing_is_said_to_drift(page):
     assert gain > 50.0
     assert page.text("#badge") == (
         f"not settled: the first cycle gains {gain:.0f} rpm; "
-        "even at high speed the loads take less than the crank gets"
+        "the loads take too little even at high speed"
     )
     scene = turned(load_scene("propeller"), {"load": 0.0})
     np.testing.assert_allclose(speed, one_cycle(scene), rtol=1e-9)

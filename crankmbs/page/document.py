@@ -31,8 +31,8 @@ _FOLDER = Path(__file__).parent
 _NUMBERS = ("finite_number", "float_type", "greater_than_equal", "less_than_equal")
 _ON = "run it with crankmbs run"
 _ENDINGS = {
-    "runs_away": "even at high speed the loads take less than the crank gets",
-    "decays": "even at low speed the loads take more than the crank gets",
+    "runs_away": "the loads take too little even at high speed",
+    "decays": "the loads take too much even at low speed",
     "wanders": "the search for the motion that repeats itself finds none",
     "uneven": (
         "misfires make cycles differ, and the motion that repeats itself is one of several cycles: "
