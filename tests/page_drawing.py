@@ -64,7 +64,7 @@ def ring_holds(pose, theta, lead, most):
     words = pose["says"]
     if words == "the crank turns evenly":
         return most <= 1e-9 and pose["ring"] is None
-    times = float(words.rpartition("drawn ")[2].removesuffix(" times as large"))
+    times = float(words.partition("(drawn ")[2].removesuffix("×)") or 1.0)
     degrees, where = words.removeprefix("crank ").split("° ")
     ahead = "ahead" if lead > 0.0 else "behind"
     return (

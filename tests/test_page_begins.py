@@ -181,9 +181,15 @@ def test_a_link_to_what_is_folded_unfolds_it(browser, tmp_path):
 
 
 def test_the_page_says_that_it_shows_the_settled_motion(browser, tmp_path, page):
-    assert "Shown is the settled motion" in page.text("footer")
+    said = "(docs/validation). Shown is the motion that the machine settles to, if it does;"
+    assert said in " ".join(page.text("footer").split())
     with opened(browser, tmp_path, "grega_lecture") as driven:
-        assert "settled" not in driven.text("footer")
+        assert "settle" not in driven.text("footer")
+
+
+def test_cycles_that_differ_and_repeat_together_are_counted(browser, tmp_path):
+    with opened(browser, tmp_path, "indicated") as visited:
+        assert visited.text("#badge") == "settled motion: these 6 cycles repeat"
 
 
 def test_two_curves_of_a_legend_have_two_colours(browser, tmp_path):

@@ -135,12 +135,12 @@ def test_a_pinned_curve_stays_as_it_was(page):
 def test_the_strip_shows_simulated_less_exact_less_lecture(page):
     page.page.select_option("[data-state=lower]", "piston acceleration")
     words = page.text("#lower .legend").replace("\u2212", "-").replace("\n", " ")
-    for difference in ("simulated - exact formula", "exact formula - lecture"):
+    for difference in ("simulated - untruncated", "untruncated - lecture"):
         assert difference in words
     number = r"(-?[\d.]+)"
     found = re.search(
-        rf"simulated {number}.*exact formula {number}.*lecture {number}.*"
-        rf"simulated - exact formula {number}.*exact formula - lecture {number}",
+        rf"simulated {number}.*untruncated {number}.*lecture {number}.*"
+        rf"simulated - untruncated {number}.*untruncated - lecture {number}",
         words,
     )
     run, exact, lecture, first, second = map(float, found.groups())
@@ -149,9 +149,9 @@ def test_the_strip_shows_simulated_less_exact_less_lecture(page):
 
 
 def test_the_ring_says_by_how_much_it_is_magnified(page):
-    assert "drawn 2 times" in page.text("#lead")
+    assert "(drawn 2×)" in page.text("#lead")
     page.type("flywheel", 0.08)
-    assert "drawn 5 times" in page.settle().text("#lead")
+    assert "(drawn 5×)" in page.settle().text("#lead")
 
 
 def test_the_first_pass_comes_at_once_and_its_error_after_the_second(page):

@@ -128,8 +128,8 @@ def _worth(scene: Scene) -> Section:
         "are exact, across it they are not.",
         figure=Figure(
             name="worth",
-            caption="Simulated, by the exact formula for two masses, and by the truncated lecture; "
-            "below, what each step leaves out.",
+            caption="Simulated, by the untruncated formulas for two masses, and by the truncated "
+            "lecture; below, what each step leaves out.",
             plots=("A force, and its errors by cause",),
             knobs=(ratio_knob(scene), speed_knob(scene)),
             choices=(Choice("quantity", "force", _QUANTITIES, _QUANTITIES[0]),),

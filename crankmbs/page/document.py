@@ -13,7 +13,6 @@ from markupsafe import Markup
 
 from crankmbs.design.freed import NEAR_REST, UNEVEN
 from crankmbs.mechanics.variables import EVERY
-from crankmbs.motion.ending import Ending
 from crankmbs.page.export import encoded, exported, rules
 from crankmbs.page.film import film_of
 from crankmbs.page.knobs import FIRING_ORDERS, Choice, choices_of, first_of, knobs_of
@@ -32,8 +31,8 @@ _FOLDER = Path(__file__).parent
 _NUMBERS = ("finite_number", "float_type", "greater_than_equal", "less_than_equal")
 _ON = "run it with crankmbs run"
 _ENDINGS = {
-    "runs_away": Ending.RUNS_AWAY.value[1].removeprefix("does not settle: "),
-    "decays": Ending.STALLS.value[1].removeprefix("does not settle: "),
+    "runs_away": "the loads take too little even at high speed",
+    "decays": "the loads take too much even at low speed",
     "wanders": "the search for the motion that repeats itself finds none",
     "uneven": (
         "misfires make cycles differ, and the motion that repeats itself is one of several cycles: "
@@ -87,7 +86,14 @@ def _rendered(name: str, scene: Scene, stem: str, given: dict[str, Any], **words
     script = f"{joined(name)}.start();"
     style = (_FOLDER / "page.css").read_text(encoding="utf-8")
     words |= {"scene": scene, "stem": stem, "given": Markup(encoded(given))}
+    words |= {"source": _sentence(scene.source)}
     return filled(_FOLDER / f"{name}.html", script, style, **words)
+
+
+def _sentence(text: str | None) -> str:
+    """A text with a full stop, so that another sentence can follow it."""
+    text = (text or "").rstrip()
+    return text if not text or text.endswith((".", "!", "?")) else f"{text}."
 
 
 def filled(template: Path, script: str, style: str, *, fonts: bool = False, **words: Any) -> str:

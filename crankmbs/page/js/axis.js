@@ -7,9 +7,10 @@ const QUARTERS = [45, 90, 180, 360, 720]; // degrees between ticks of the crank 
 /** How curves { x, y } are put into a box: { box, right, up, x, y }, maps of values to pixels and
  * the ranges shown. holds : values { x, y } that the ranges hold besides, or none */
 export function frameOf(box, curves, { shape, overAngle, holds = {} }) {
-  const across = () => [...curves.flatMap((curve) => curve.x), ...(holds.x ?? [])];
-  let y = rangeOf([...curves.flatMap((curve) => curve.y), ...(holds.y ?? [])]);
-  let x = overAngle ? ends(shape.curves[0].x) : rangeOf(across());
+  let y = rangeOf(curves.flatMap((curve) => curve.y), holds.y);
+  let x = overAngle
+    ? ends(shape.curves[0].x)
+    : rangeOf(curves.flatMap((curve) => curve.x), holds.x);
   if (shape.equal) [x, y] = squared(box, x, y);
   const [from, to] = shape.equal ? [box.right, box.left] : [box.left, box.right];
   const right = (value) => from + ((value - x.low) / (x.high - x.low)) * (to - from);
@@ -96,9 +97,10 @@ function ends(x) {
   return { low: Math.min(x[0], x[x.length - 1]), high: Math.max(x[0], x[x.length - 1]) };
 }
 
-/** A range around values, which does not change with every little change of them. */
-function rangeOf(all) {
-  const values = all.filter((value) => !Number.isNaN(value)); // gaps
+/** A range around values, which does not change with every little change of them; it begins at a 0
+ * that it is to hold. */
+function rangeOf(all, holds = []) {
+  const values = [...all, ...holds].filter((value) => !Number.isNaN(value)); // gaps
   let low = Math.min(...values);
   let high = Math.max(...values);
   if (!values.length) [low, high] = [-1, 1];
@@ -107,7 +109,7 @@ function rangeOf(all) {
   const room = 0.03 * (high - low);
   const { step } = roundTicks(low, high, 24);
   return {
-    low: Math.floor((low - room) / step) * step,
+    low: low === 0 && holds.includes(0) ? 0 : Math.floor((low - room) / step) * step,
     high: Math.ceil((high + room) / step) * step,
   };
 }

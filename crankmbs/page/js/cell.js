@@ -145,9 +145,5 @@ export class Stepper {
   spentTo(x) {
     return integralTo(this.rule, this.slowness, 0, x);
   }
-
-  nodes() {
-    return { torque: this.torque.slice(), slowness: this.slowness.slice() };
-  }
 }
 

@@ -29,10 +29,12 @@ export class Firing {
   /** Decide at a crank angle, for the cylinders that do so there; state : gives time and speed. */
   pass(theta, sense, state) {
     if (this.fuel === null || Math.abs(theta - this.start.angle) <= SAME) return;
-    const cycles = this.cylinders.map(({ phase }) => {
-      const turns = (theta + phase - Math.PI) / this.period;
-      const apart = Math.abs(turns - Math.round(turns)) * this.period;
-      return apart < 2 * SAME ? this.cycleOf(phase, Math.round(turns), sense) : 0;
+    const turnsOf = ({ phase }) => (theta + phase - Math.PI) / this.period;
+    const isWhole = (turns) => Math.abs(turns - Math.round(turns)) * this.period < 2 * SAME;
+    if (!this.cylinders.some((each) => isWhole(turnsOf(each)))) return;
+    const cycles = this.cylinders.map((each) => {
+      const turns = turnsOf(each);
+      return isWhole(turns) ? this.cycleOf(each.phase, Math.round(turns), sense) : 0;
     });
     if (cycles.some((cycle) => cycle > 0)) this.decide(...state(), cycles);
   }

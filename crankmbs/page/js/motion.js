@@ -32,6 +32,7 @@ export class Travel {
     this.phases = firstPhases(train.loads, omega);
     this.firing = new Firing(train.fuel, train.cylinders, train.period, this.start);
     this.path = new Path(grid.rule);
+    this.atNodes = { torque: [], slowness: [] }; // of all cells
     this.stepper = new Stepper(grid.rule);
     this.factor = 1;
     this.lost = 0; // of the energy and the time by rounding
@@ -111,10 +112,15 @@ export class Travel {
     const { stepper, energy, time } = this;
     const width = target - this.theta;
     const { sense, branch, phases } = this;
-    const { torque, slowness } = stepper.nodes();
+    const { torque, slowness } = this.atNodes;
+    const first = torque.length;
+    for (let j = 0; j < stepper.torque.length; j++) {
+      torque.push(stepper.torque[j]);
+      slowness.push(stepper.slowness[j]);
+    }
     this.path.add({
       from: this.theta, width, energy, time, sense,
-      branch, phases, shares: this.firing.shares, number, torque, slowness, first: 0,
+      branch, phases, shares: this.firing.shares, number, torque, slowness, first,
     });
     const gained = width * stepper.work - this.lost;
     this.energy = energy + gained;
@@ -130,8 +136,10 @@ export class Travel {
   /** Where in the solved cell, from 0 to 1, the branch ends first, and by what; null if nowhere. */
   exit(width) {
     const { branch, stepper, sense, time } = this;
+    const timely = time + Math.abs(width) * stepper.spent >= branch.tEnd;
+    if (!timely && branch.low === -Infinity && branch.high === Infinity) return null;
     const exits = [];
-    if (time + Math.abs(width) * stepper.spent >= branch.tEnd) {
+    if (timely) {
       const late = (x) => time + Math.abs(width) * stepper.spentTo(x) - branch.tEnd;
       exits.push({ x: rootIn(late, 0, 1), time: branch.tEnd, omega: null });
     }

@@ -49,10 +49,11 @@ export class Plot {
   draw(shape, marks) {
     this.shape = shape;
     this.seen = visible(shape);
-    this.most = sizeOf(shape.curves[0]);
+    this.most = sizeOf({ y: [...shape.curves[0].y, ...(shape.holds?.y ?? [])] });
     this.marks = marks;
     this.root.classList.toggle("diagram", isDiagram(shape));
     this.root.classList.toggle("square", Boolean(shape.equal));
+    this.root.classList.toggle("apart", shape.differences.length > 0);
     if (this.ghost && this.ghost.title !== shape.title) this.ghost = null;
     this.trace();
   }

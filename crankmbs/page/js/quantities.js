@@ -7,7 +7,7 @@ const EXACT = "untruncated lecture";
 const LECTURE = "S1 (motion and forces truncated)";
 
 /** The three curves of a quantity, by what made them. */
-export const CURVES = ["simulated", "exact formula", "lecture"];
+export const CURVES = ["simulated", "untruncated", "lecture"];
 
 /** Quantities by name: unit, its SI value, `of` a sample and a cylinder; `said` by the formulas;
  * cylinder : whether the variables of the motion and one cylinder are enough. */

@@ -252,8 +252,8 @@ export class Stage {
     const lead = (this.cycle.leadAt(theta) * this.cycle.sense * 180) / Math.PI;
     const decimals = Math.min(Math.max(2 + Math.floor(Math.log10(this.magnified)), 1), 6);
     const where = lead < 0 ? "behind" : "ahead of";
-    return `crank ${readable(Math.abs(lead), decimals)}° ${where} steady rotation, ` +
-      `drawn ${general(this.magnified)} times as large`;
+    const drawn = this.magnified > 1 ? ` (drawn ${general(this.magnified)}×)` : "";
+    return `crank ${readable(Math.abs(lead), decimals)}° ${where} steady rotation${drawn}`;
   }
 
   poseArrows(v) {

@@ -53,10 +53,11 @@ export function trustOf({ prescribed }, error) {
 /** How far the cycle is one that repeats itself: { text, good }. sentences : of endings */
 export function badgeOf(cycle, endings) {
   const gain = readable(Math.abs(cycle.gain), Math.abs(cycle.gain) < 10 ? 2 : 0);
-  const drifts = `${cycle.gain > 0 ? "gains" : "loses"} ${gain} rpm a cycle`;
+  const drifts = `${cycle.gain > 0 ? "gains" : "loses"} ${gain} rpm`;
   if (cycle.prescribed) {
     const steady = Math.abs(cycle.drift) < 1e-9 * Math.abs(cycle.mean);
-    return steady ? said("prescribed speed", true) : said(`prescribed speed: ${drifts}`, false);
+    if (steady) return said("prescribed speed", true);
+    return said(`prescribed speed: ${drifts} a cycle`, false);
   }
   if (cycle.scene.freed) {
     const held = "settled under the constant torque that balances the cycle";
@@ -67,10 +68,13 @@ export function badgeOf(cycle, endings) {
   if (cycle.settled && cycle.motion.balanced) {
     return said("settled at any speed: the mean speed of the start is kept", true);
   }
-  if (cycle.settled) return said("settled motion: every cycle is like this one", true);
+  const count = Math.round(Math.abs(cycle.to - cycle.from) / cycle.scene.period);
+  if (cycle.settled) {
+    const repeats = count > 1 ? `these ${count} cycles repeat` : "every cycle is like this one";
+    return said(`settled motion: ${repeats}`, true);
+  }
   if (cycle.train.fuel?.misfire.some(({ every }) => every)) {
-    const once = drifts.replace(/ a cycle$/, "");
-    return said(`one of several cycles, of which the last ${once}; ${endings.uneven}`, false);
+    return said(`one of several cycles, of which the last ${drifts}; ${endings.uneven}`, false);
   }
   const why = cycle.why === null ? "" : `; ${endings[cycle.why]}`;
   const which = cycle.scene.run.settled ? "first" : "last";
