@@ -109,8 +109,10 @@ def _timed_all(
     if processes == 1:
         yield from map(timed, cases)
         return
+    took = {name: row.seconds for name, row in read_rows().items()}
+    longest_first = sorted(cases, key=lambda case: took.get(case.name, 0), reverse=True)
     with ProcessPoolExecutor(processes) as pool:
-        for future in as_completed([pool.submit(timed, case) for case in cases]):
+        for future in as_completed([pool.submit(timed, case) for case in longest_first]):
             yield future.result()
 
 
