@@ -70,6 +70,16 @@ def test_a_question_is_put_in_words_of_the_command_line(export):
     assert said == "-o: export.csv is the file that is read; choose another name"
 
 
+def test_a_file_that_is_no_table_is_not_overwritten(export):
+    scene = export / "mine.toml"
+    scene.write_text(FREE)
+    said = refused("pressure", "export.csv", "-o", "mine.toml")
+    assert said.startswith("mine.toml: exists already, is no table of this command")
+    assert scene.read_text() == FREE
+    for _ in range(2):  # a table is made anew
+        assert crankmbs_("pressure", "export.csv", "-o", "t.csv", "--no-figures").exit_code == 0
+
+
 def test_the_table_in_a_scene_gives_its_imep(export):
     """The mean effective pressure of a run is that of the file, by another quadrature."""
     from crankmbs import simulate

@@ -204,7 +204,14 @@ def test_the_command(tmp_path, monkeypatch):
     assert ("[motion]" in free, 'until = "1 cycle"' in free) == (False, True)
     run = simulate(load_scene("free.toml"))
     assert measure(run).fluctuation.value == pytest.approx(0.01, rel=1e-5)
-    assert "a constant -21.8274 N m balances gas and gravity" in balanced.output
+    assert (
+        "none in the scene; a constant -21.8274 N m, which balances gas, gravity and friction"
+        in balanced.output
+    )
+    constant = '\n[[torque]]\nkind = "constant"\ntorque = "-30 N m"\n'
+    (tmp_path / "braked.toml").write_text(free.split("[[torque]]")[0] + constant)
+    braked = crankmbs_("flywheel", "braked.toml", "--no-figures").output
+    assert "the scene's, and a constant 8.17257 N m, which balances gas, gravity" in braked
     far = crankmbs_("flywheel", "yi_diesel_free", "--fluctuation", "150 %")
     assert far.exit_code == 3
     assert "out of reach" in far.output

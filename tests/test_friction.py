@@ -113,7 +113,7 @@ def test_rings_use_up_the_energy_over_the_way_of_the_piston(formulation, speed):
     force, start = 45.0, 0.3
     result = simulate(flywheel(Friction(ring_force=force), speed), formulation=formulation)
     assert result.status == 1
-    assert "friction holds" in result.message
+    assert "friction, or a force against the sliding of a piston, holds the crank" in result.message
     theta = result.data.crank_angle.values
     marks = sorted(c + 2.0 * math.pi * n for c in dead_centres(R, L, E) for n in range(-20, 20))
 
@@ -170,7 +170,7 @@ def test_what_friction_holds_does_not_move(formulation):
     held = flywheel(Friction(ring_force=45.0), 0.0, torque=(Constant(torque=0.5),))
     result = simulate(held, formulation=formulation)
     assert (result.status, result.data.sizes["time"]) == (1, 1)
-    assert "friction holds" in result.message
+    assert "friction, or a force against the sliding of a piston, holds the crank" in result.message
     force = float(result.data.friction_force[0, 0])
     assert force * -slope(0.3) == pytest.approx(-0.5, rel=1e-12)
     assert float(result.data.crank_acceleration[0]) == 0.0

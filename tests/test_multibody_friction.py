@@ -53,8 +53,8 @@ def test_a_crank_that_friction_stops_ends_there():
     )
     ours, exact = (simulate(scene, formulation=f) for f in ("multibody", "crank_angle"))
     assert ours.status == exact.status == 1
-    assert "friction holds the crank there" in ours.message
-    assert "friction holds the crank there" in exact.message
+    assert "holds the crank there" in ours.message
+    assert "holds the crank there" in exact.message
     apart = abs(float(ours.data.crank_angle[-1] - exact.data.crank_angle[-1]))
     assert apart <= 2.0 * ours.data.crank_angle.attrs["error_estimate"] + 1e-9
 

@@ -183,7 +183,7 @@ def test_friction_holds_a_crank_up_to_its_limit_and_lets_go_beyond():
     for share in (0.5, -0.999):
         state = stepper.advance(0.01, load=share * limit)
         assert (state.crank_angle, state.crank_speed) == (1.0, 0.0)
-        assert "friction holds the crank" in state.message
+        assert "holds the crank there" in state.message
         held = float(stepper.data["friction_force"][0, 0])
         assert held == pytest.approx(-share * 40.0, rel=1e-9)
     assert float(data["friction_force"][0, 0]) == 0.0

@@ -117,22 +117,19 @@ def _written(path: Path, scene: Scene, wheel: Flywheel, file: Path) -> tuple[Pat
     """The scene with the inertia, in its own text; set free or balanced also with its start and the
     load."""
     from crankmbs.export import copy_scene
-    from crankmbs.scene.loads import Constant
 
     settled = wheel.result.scene
     assert settled.start is not None
-    further = settled.torque[len(scene.torque) :]
-    torque = math.fsum(load.torque for load in further if isinstance(load, Constant))
+    torque = _balance(scene, wheel)
     inertia = {"inertia": f"{digits(*wheel.inertia)} kg m^2"}
     remark = f"the speed fluctuates by {100.0 * wheel.fluctuation.value:.4g} %"
-    loaded = abs(torque) > _NOTHING * wheel.work.value
-    if scene.motion is None and not loaded:
+    if scene.motion is None and not torque:
         return copy_scene(path, file, inertia, remark)
     start = {
         "angle": f"{settled.start.angle / DEGREE:.9g} deg",
         "speed": f"{settled.start.speed / RPM:.9g} rpm",
     }
-    load = f"{torque:.9g} N m" if loaded else None
+    load = f"{torque:.9g} N m" if torque else None
     return copy_scene(path, file, inertia, remark, start=start, torque=load)
 
 
@@ -170,10 +167,20 @@ def _report(name: str, scene: Scene, wheel: Flywheel, before: Measures | None) -
 
 
 def _load(scene: Scene, wheel: Flywheel) -> str:
-    if scene.torque:
-        return "the scene's"
-    balance = wheel.result.data["external_torque"].values[0]
-    return f"none in the scene; a constant {digits(balance)} N m balances gas and gravity"
+    balance = _balance(scene, wheel)
+    what = f"a constant {digits(balance)} N m, which balances gas, gravity and friction"
+    if not scene.torque:
+        return f"none in the scene; {what}"
+    return f"the scene's, and {what} beside it" if balance else "the scene's"
+
+
+def _balance(scene: Scene, wheel: Flywheel) -> float:
+    """The constant torque [N m] that was added to the scene's loads; 0 where it is nothing."""
+    from crankmbs.scene.loads import Constant
+
+    further = wheel.result.scene.torque[len(scene.torque) :]
+    torque = math.fsum(load.torque for load in further if isinstance(load, Constant))
+    return torque if abs(torque) > _NOTHING * wheel.work.value else 0.0
 
 
 def _row(name: str, estimate: tuple[float, float], scale: float = 1.0, most: int = 6) -> list[str]:

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from crankmbs.cli.folder import writable
-from crankmbs.errors import InputError
+from crankmbs.errors import InputError, OutputError
 
 __all__ = ["as_options", "naming_options", "table_file"]
 
@@ -17,6 +17,7 @@ _NAMES = (
     "|cycles|separator|decimal|skip|scene|wheel|index|sensor|delay"
 )
 _GIVEN = re.compile(rf'\b({_NAMES})=(True\b|"[^"]*"|\.\.\.|[\w.]+)')
+_TABLES = b"# cylinder pressure from ", b"# speed over the crank angle from "  # their first lines
 _BARE = re.compile(r"\b(loss_angle|compression_ratio|firing_tdc)\b(?!=)")
 
 
@@ -25,11 +26,19 @@ def table_file(file: Path, out: Path | None, name: str) -> Path:
 
     Raises
     ------
-    CrankmbsError : it is the measured file itself; its folder cannot be written
+    CrankmbsError : it is the measured file itself, or another file that is no such table; its
+        folder cannot be written
     """
     target = Path("results", file.stem, name) if out is None else out
     if target.resolve() == file.resolve():
         raise InputError(f"-o: {target} is the file that is read; choose another name")
+    if target.is_file():
+        with target.open("rb") as there:
+            if not there.readline(64).startswith(_TABLES):  # it may be the very scene
+                raise OutputError(
+                    f"{target}: exists already, is no table of this command and is not "
+                    "overwritten; choose another name"
+                )
     writable(target.parent)
     return target
 

@@ -21,7 +21,11 @@ class Ending(Enum):
         "held at {speed:.6g} rpm at {angle:.6g} degrees: a jump of the loads drives the speed back "
         "from both sides",
     )
-    STICKS = 1, "at rest at {angle:.6g} degrees: friction holds the crank there"
+    STICKS = (
+        1,
+        "at rest at {angle:.6g} degrees: friction, or a force against the sliding of a piston, "
+        "holds the crank there",
+    )
     REST = 1, "came to rest at {angle:.6g} degrees"
     SLOWED = 1, "came to rest at {angle:.6g} degrees, {time:.6g} s, before the end of the run"
     LAW_RESTS = (

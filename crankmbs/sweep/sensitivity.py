@@ -39,8 +39,9 @@ class Sensitivity:
 
     @property
     def elasticity(self) -> float:
-        """Percent by which the measure changes for one percent of the number; NaN of a number 0."""
-        return self.derivative.value * (self.value or math.nan) / self.reached.value
+        """Percent by which the measure changes for one percent of the number; NaN where the number
+        or the measure is 0."""
+        return self.derivative.value * (self.value or math.nan) / (self.reached.value or math.nan)
 
 
 def sensitivity(scene: Scene, name: str, measure: str) -> Sensitivity:
