@@ -1,6 +1,7 @@
 """What other programs are given: a scene that reads back, arrays with their units and errors, and a
 script for exudyn that quotes the multibody model."""
 
+import ast
 import inspect
 import math
 import re
@@ -92,6 +93,33 @@ def test_the_script_gives_the_motion_within_the_error_that_it_states(name, tmp_p
         least = stated.get(heading.split("[")[0].split(" ")[0])
         if least is not None:
             assert 0.02 * least < missed < least, heading
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_script_has_no_name_that_it_does_not_use(name):
+    tree = ast.parse(exudyn_script(SCENES[name], "mine"))
+    stored = [
+        target.id
+        for node in tree.body
+        if isinstance(node, ast.Assign)
+        for target in node.targets
+        if isinstance(target, ast.Name)
+    ]
+    loaded = {
+        each.id
+        for each in ast.walk(tree)
+        if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Load)
+    }
+    functions = {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
+    imported = {
+        (alias.asname or alias.name).split(".")[0]
+        for node in tree.body
+        if isinstance(node, ast.Import | ast.ImportFrom)
+        for alias in node.names
+    }
+    assert {*stored, *functions, *imported} - loaded == {"annotations"}
+    assert ("PRESCRIBED_SPEED" in loaded) == (SCENES[name].motion is not None)
+    assert ("TORQUE_CONSTANT" in loaded) == bool(SCENES[name].torque)
 
 
 def test_the_script_quotes_the_model():

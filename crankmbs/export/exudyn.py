@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from crankmbs.errors import InputError
 from crankmbs.mechanics.geometry import top_position
@@ -37,11 +38,15 @@ from crankmbs.simulate import simulate
 
 __all__ = ["exudyn_script"]
 
-_BODY = Path(__file__).with_name("exudyn_body.txt")
+_BODY = Environment(
+    loader=FileSystemLoader(Path(__file__).parent),
+    undefined=StrictUndefined,
+    trim_blocks=True,
+    lstrip_blocks=True,
+    keep_trailing_newline=True,
+).get_template("exudyn_body.txt")
 _IMPORTS = """from __future__ import annotations
 
-import math
-from bisect import bisect_right
 from typing import Any, Callable, NamedTuple
 
 import exudyn as exu
@@ -111,13 +116,22 @@ def exudyn_script(scene: Scene, stem: str) -> str:
 
 def _text(train: CrankTrain, stem: str, end: float, steps: int) -> str:
     """All of a script but its head."""
-    parameters = _parameters(train, stem, end, steps)
+    over_angle = _over_angle(train)
+    springs = any(map(any, _springs(train.scene)))
+    parameters = _parameters(train, stem, end, steps, springs=springs, angles=bool(over_angle))
     sources: list[Any] = [Body, Hinge, Guide, Mechanism, marker, add_body, build, settings_of]
     quoted = [inspect.getsource(each) for each in sources]
     quoted[-1] = quoted[-1].replace("settings_of", "settings", 1)
     main = 'if __name__ == "__main__":\n    main()\n'
-    body = _BODY.read_text(encoding="utf-8")
-    return "\n\n".join([_IMPORTS, *quoted, parameters, *_over_angle(train), body, main])
+    body = _BODY.render(
+        prescribed=train.scene.motion is not None,
+        loads=bool(train.scene.torque),
+        springs=springs,
+        angles=bool(over_angle),
+    )
+    bisection = "from bisect import bisect_right\n" if over_angle else ""
+    imports = _IMPORTS.replace("from typing", f"{bisection}from typing")
+    return "\n\n".join([imports, *quoted, f"{parameters}{over_angle}\n", body, main])
 
 
 def _run(text: str) -> dict[str, Array]:
@@ -201,22 +215,37 @@ def _head(scene: Scene, step: float, errors: dict[str, float]) -> str:
     return "\n".join(lines)
 
 
-def _parameters(train: CrankTrain, stem: str, end: float, steps: int) -> str:
+def _parameters(
+    train: CrankTrain, stem: str, end: float, steps: int, *, springs: bool, angles: bool
+) -> str:
+    """What the functions below take, and nothing that none of them does."""
     scene, step = train.scene, end / steps
-    begin = scene.start or scene.motion
-    assert begin is not None
-    speed = None if scene.motion is None else scene.motion.speed
-    values: list[tuple[str, object, str]] = [
-        ("PHASES", [c.phase for c in scene.cylinders], "rad, cycle angles at crank angle 0"),
-        ("TOPS", [top_position(*g.shape) for g in scene.running_gear], "m, of the pistons"),
-        ("SPRINGS", _springs(scene), "of each piston: N at the top dead centre, N/m, N s/m"),
-        ("TORQUE_CONSTANT", _sum(scene, Constant, "torque"), "N m, on the free crank"),
-        ("TORQUE_VISCOUS", 0.0 - _sum(scene, Viscous, "coefficient"), "N m s"),
-        ("TORQUE_QUADRATIC", 0.0 - _sum(scene, Quadratic, "coefficient"), "N m s^2"),
-        ("PRESCRIBED_SPEED", speed, "rad/s; None: the crank is free"),
-        ("START_ANGLE", begin.angle, "rad"),
+    values: list[tuple[str, object, str]] = []
+    if angles:
+        phases = [c.phase for c in scene.cylinders]
+        values += [
+            ("PHASES", phases, "rad, cycle angles at crank angle 0"),
+            ("NEAR", NEAR, "rad: angles nearer than this are one"),
+        ]
+    if springs:
+        tops = [top_position(*gear.shape) for gear in scene.running_gear]
+        values += [
+            ("TOPS", tops, "m, of the pistons"),
+            ("SPRINGS", _springs(scene), "of each piston: N at the top dead centre, N/m, N s/m"),
+        ]
+    if scene.torque:
+        values += [
+            ("TORQUE_CONSTANT", _sum(scene, Constant, "torque"), "N m, on the free crank"),
+            ("TORQUE_VISCOUS", 0.0 - _sum(scene, Viscous, "coefficient"), "N m s"),
+            ("TORQUE_QUADRATIC", 0.0 - _sum(scene, Quadratic, "coefficient"), "N m s^2"),
+        ]
+    if scene.motion is not None:
+        values += [
+            ("PRESCRIBED_SPEED", scene.motion.speed, "rad/s"),
+            ("START_ANGLE", scene.motion.angle, "rad"),
+        ]
+    values += [
         ("OUTPUT", f"{stem}_exudyn.csv", "not the name of a table that the scene reads"),
-        ("NEAR", NEAR, "rad: angles nearer than this are one"),
         ("STEP", step, "s"),
         ("STEPS", steps, ""),
     ]
@@ -276,9 +305,9 @@ def _springs(scene: Scene) -> list[tuple[float, float, float]]:
     return rows
 
 
-def _over_angle(train: CrankTrain) -> list[str]:
+def _over_angle(train: CrankTrain) -> str:
     """The forces over the cycle angle, of gas and tables: each different one once, and which act on
-    each piston."""
+    each piston; nothing where there are none."""
     scene = train.scene
     of_each: list[list[tuple[PeriodicPressure | Cycle, float]]] = []
     for k, gear in enumerate(scene.running_gear):
@@ -286,6 +315,8 @@ def _over_angle(train: CrankTrain) -> list[str]:
         tables = [force.law.over_angle for force in _on(scene, k)]
         of_each.append([*gas, *((each, 1.0) for each in tables if each is not None)])
     different = list(dict.fromkeys(each for forces in of_each for each in forces))
+    if not different:
+        return ""
     lines = [
         "# What gas and tables put on a piston [N] over its cycle angle [rad]: from each start a",
         "# cubic, by descending power of the angle from there.",
@@ -307,4 +338,4 @@ def _over_angle(train: CrankTrain) -> list[str]:
         ]
     names = [[f"PIECES_{different.index(force) + 1}" for force in forces] for forces in of_each]
     rows = (f"[{', '.join(row)}]" for row in names)
-    return [*lines, f"OVER_ANGLE = [{', '.join(rows)}]", "", ""]
+    return "\n".join(["", *lines, f"OVER_ANGLE = [{', '.join(rows)}]"])
