@@ -69,6 +69,10 @@ def test_the_dead_centre_is_moved_only_on_request(tmp_path):
     assert moved.cylinders[0].imep[0] / 1e5 == pytest.approx(exact, abs=2e-3)
     assert kept.cylinders[0].imep[0] / 1e5 == pytest.approx(exact, abs=0.5)
     assert abs(kept.cylinders[0].imep[0] / 1e5 - exact) > 0.1  # what half a degree costs
+    low, high = (imep / 1e5 for imep in kept.cylinders[0].imep_within)
+    assert low - 2e-3 < exact < high + 2e-3  # and what stands beside it
+    beside = f", from {low:.4g} to {high:.4g} bar with the dead centre where it may lie"
+    assert any(beside in sentence for sentence in kept.sentences)
 
 
 @pytest.mark.parametrize("engine", [MOTORED, FIRED])

@@ -1,6 +1,5 @@
 """What a sweep answers: which value gives what is wanted, or the least; and its figures."""
 
-import math
 import re
 
 import numpy as np
@@ -9,31 +8,25 @@ from command_line import crankmbs_, names, refused
 from matplotlib.contour import QuadContourSet
 
 from crankmbs import (
-    Bearings,
     Estimate,
     InputError,
     Sample,
-    Shell,
     flywheel,
     load_scene,
     minimize,
     sensitivity,
-    simulate,
     sobol_indices,
     solve,
     sweep,
 )
 from crankmbs.figures import png, sweep_figure
-from crankmbs.report.rows import tables
-from crankmbs.sweep.columns import columns_of, row_of
+from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.reading import reading_of
 from crankmbs.sweep.solve import Asked
 
 pytestmark = pytest.mark.slow
 
 SCENE = load_scene("propeller").with_(run__until="settled")
-SHELL = Shell(diameter="60 mm", width="30 mm")
-SHELLS = Bearings(crank_pin=SHELL, main_journal=SHELL)
 SMOOTH = load_scene("yi_diesel").with_(run__until="1 cycles", gas=None, gravity=None)
 
 
@@ -215,65 +208,6 @@ def test_a_question_that_cannot_be_is_refused(call, said):
 )
 def test_measures_are_named_in_words(words, column):
     assert reading_of(words, columns_of(SCENE, series=False)).column == column
-
-
-@pytest.mark.parametrize(
-    ("name", "changes"),
-    [
-        ("yi_diesel_free", {"run__until": "2 cycles"}),
-        ("steam_engine", {"run__until": "2 cycles"}),
-        ("two_stage_compressor", {"run__until": "2 cycles"}),
-        ("friction", {"run__until": "2 cycles"}),
-        ("coasting", {}),
-        ("torque_driven", {}),
-        ("validation/scenes/press.toml", {"run__until": "0.4 s"}),
-        ("propeller", {"run__until": "2 cycles", "bearings": SHELLS}),
-    ],
-)
-def test_every_measure_that_is_printed_is_taken_by_its_name(name, changes):
-    scene = load_scene(name).with_(**changes)
-    result, columns = simulate(scene), columns_of(scene, series=False)
-    row = row_of(result, None)
-    printed = tables(result, result.measures())
-    names = [line[0] for table in printed for line in table.rows]
-    for table in printed[1:]:  # as the heading and the line say it
-        load = "specific load " if table.headings[0].startswith("specific") else ""
-        joints = [line[0] for line in table.rows if "torque" not in line[0] and "[N" in line[0]]
-        joints = [line[0] for line in table.rows] if load else joints
-        of = [heading for heading in table.headings if heading in ("peak", "mean")]
-        names += [f"{each} {load}{joint}" for each in of for joint in joints]
-    names += [
-        column.long_name
-        for key, column in columns.items()
-        if f"{key}_error" in columns and key != "lecture_deviation"
-    ]
-    values = {
-        words: reading_of(words, columns).of_row(row).value
-        for line in names
-        for words in (line, line.partition(" [")[0])
-    }
-    assert all(map(math.isfinite, values.values()))
-
-
-def test_a_name_is_of_what_it_says():
-    scene = load_scene("yi_diesel_free").with_(run__until="2 cycles")
-    result, columns = simulate(scene), columns_of(scene, series=False)
-    row, measures = row_of(result, None), result.measures()
-
-    def value(words):
-        return reading_of(words, columns).of_row(row).value
-
-    pins = [joint.peak.value for joint in measures.joints if joint.joint == "crank pin"]
-    assert [value(f"crank pin {k} [N]") for k in (1, 2, 3, 4)] == pins
-    assert value("peak crank pin force") == max(pins)
-    assert value("drive power") == -value("brake power") == measures.power.value
-    speeds = [measures.mean_speed.value, value("highest speed"), value("lowest speed")]
-    assert speeds[1] > speeds[0] > speeds[2]
-    assert (speeds[1] - speeds[2]) / speeds[0] == pytest.approx(value("fluctuation"))
-    words = reading_of("largest error of side thrust by S0 (motion truncated), over its", columns)
-    assert words.quantity == "side thrust"
-    with pytest.raises(InputError, match="force, 5: there are 4; give a number from 1 to 4"):
-        value("crank pin 5")
 
 
 # ------------------------------------------------------------------------------- figures, commands

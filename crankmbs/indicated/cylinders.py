@@ -58,7 +58,21 @@ def cylinder_of(
         noise=rough,
         closure=float(np.median(_closure(pressure))),
         moved=moved,
+        imep_within=_within(phi, pressure, shape, period, centre),
     )
+
+
+def _within(
+    phi: Array, pressure: Array, shape: Shape | None, period: float, centre: DeadCentre | None
+) -> tuple[float, float] | None:
+    """The mean imep [Pa] with the dead centre at either end of where it may lie, the less first."""
+    if shape is None or centre is None:
+        return None
+    low, high = sorted(
+        float(np.mean(_mean_effective_pressure(phi - at, pressure, shape, period)))
+        for at in (centre.low, centre.high)
+    )
+    return low, high
 
 
 def _moved(

@@ -25,7 +25,8 @@ class CylinderPressure:
     pressure : shape (cycles, n) [Pa]; offset : shape (cycles,) [Pa] that was added
     firing : the file's angle [deg] of its firing dead centre; lag [deg]: behind the first cylinder,
         measured between the flanks of their compression
-    imep : shape (cycles,) [Pa]; None without a geometry
+    imep : shape (cycles,) [Pa]; None without a geometry; imep_within [Pa] : least and largest of
+        its mean with the dead centre where it may lie, None where nothing tells that
     fired : whether it burns; None where that cannot be told
     dead_centre : where the true dead centre lies from that used; None where nothing tells
     noise [Pa] : standard deviation of a row; closure [Pa] : the median step from a cycle to the
@@ -45,6 +46,7 @@ class CylinderPressure:
     noise: float
     closure: float
     moved: tuple[float, float, float] | None = None
+    imep_within: tuple[float, float] | None = None
 
     @property
     def mean(self) -> Array:

@@ -46,6 +46,9 @@ def _size(cylinder: CylinderPressure, name: str) -> str:
     work = ""
     if cylinder.imep is not None:
         work = f"; imep {np.mean(cylinder.imep) / BAR:.4g} bar"
+    if cylinder.imep_within is not None:
+        low, high = (imep / BAR for imep in cylinder.imep_within)
+        work += f", from {low:.4g} to {high:.4g} bar with the dead centre where it may lie"
     side = "after" if at >= 0.0 else "before"
     named = "" if cylinder.name == name else f"{cylinder.name}, "
     return (
