@@ -13,8 +13,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from crankmbs import load_scene, sweep
+from crankmbs.compare import short_name
 from crankmbs.digits import error_digits
-from crankmbs.figures.style import STYLE, caption, logarithmic, panels
+from crankmbs.figures.style import STYLE, caption, label_contours, logarithmic, panels
 from crankmbs.storage.files import write_in_one_move
 
 __all__ = ["main"]
@@ -48,9 +49,9 @@ def main() -> int:
         caption(
             figure,
             [
-                "largest error of the lecture's truncated formulas at constant speed, in % of the "
-                "peak of each quantity",
-                f"propeller, settled, one cylinder; error of the error at most "
+                f"largest error of the truncated formulas of {short_name(_LECTURE)} at constant "
+                "speed, in % of the peak of each quantity",
+                f"settled cycles of propeller, one cylinder; numerical error at most "
                 f"{error_digits(error)} %",
             ],
         )
@@ -68,10 +69,10 @@ def _draw(ax: Axes, data: xr.Dataset) -> None:
     norm = mpl.colors.BoundaryNorm(levels, 256)
     ax.contourf(fluctuation, ratio, off, levels, cmap="YlOrBr", norm=norm, extend="max")
     lines = ax.contour(fluctuation, ratio, off, levels[1:], colors="black", linewidths=1.0)
-    ax.clabel(lines, fmt=lambda value: f"{value:g} %", fontsize=12)
     ax.set_xscale("log")
     logarithmic(ax.xaxis)
-    ax.set_xlabel("fluctuation of the speed [%]")
+    label_contours(ax, lines, lambda value: f"{value:g} %", fontsize=12)
+    ax.set_xlabel("coefficient of fluctuation [%]")
     ax.set_title(str(data["quantity"].values))
 
 

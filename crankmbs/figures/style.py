@@ -14,6 +14,7 @@ from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 from numpy.typing import NDArray
@@ -34,6 +35,7 @@ __all__ = [
     "force_scale",
     "grouped",
     "keep_flat",
+    "label_contours",
     "legend",
     "legend_grid",
     "line_of",
@@ -56,6 +58,7 @@ _GREY = "0.55"
 FLAT = 1e-6  # of the mean: what varies less is drawn as constant
 _SAME = 1e-3  # of the range of a panel's curves: less than a pixel of it, a fifth of a line
 _SMALLER = 2  # points: text at the dead centres and of the caption, than the type of the figure
+_EDGE = 0.06  # of a panel's side: the room that the label of a contour takes
 _FAST = {"compress_level": 3}  # of a PNG: a third less time for a sixth more bytes
 _LINE, _LETTER = 1.27, 0.55  # of its size: a line of text, and a letter's width, rather more
 _HANDLE = 5.0  # of the type's size: a line in a legend with its gaps
@@ -146,6 +149,26 @@ def decades(values: Iterable[float]) -> tuple[float, float]:
     """Whole decades around positive values."""
     logarithms = np.log10([*values])
     return 10.0 ** math.floor(logarithms.min() - 0.1), 10.0 ** math.ceil(logarithms.max() + 0.1)
+
+
+def label_contours(
+    ax: Axes, contours: QuadContourSet, words: Callable[[float], str], fontsize: float
+) -> None:
+    """Write what each contour is in the middle of what is clear of the panel's edges, where no
+    other label stands; limits and scales of the axes must be final."""
+    to_axes = ax.transScale + ax.transLimits
+    places: list[tuple[float, float]] = []
+    occupied: list[Array] = []
+    parts = [p for path in contours.get_paths() for p in path.to_polygons(closed_only=False)]
+    for line in map(np.asarray, parts):
+        points = to_axes.transform(line)
+        inside = np.flatnonzero(np.all(np.abs(points - 0.5) < 0.5 - _EDGE, axis=1))
+        if len(inside) and np.max(np.ptp(points, axis=0)) > 2.0 * _EDGE:
+            k = inside[len(inside) // 2]
+            if all(np.max(np.abs(points[k] - other)) > _EDGE for other in occupied):
+                occupied.append(points[k])
+                places.append((float(line[k, 0]), float(line[k, 1])))
+    ax.clabel(contours, manual=places, fmt=words, fontsize=fontsize)
 
 
 def line_of(cylinder: int) -> dict[str, Any]:

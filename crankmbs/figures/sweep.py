@@ -17,7 +17,7 @@ from matplotlib.ticker import MaxNLocator
 from crankmbs.digits import error_digits
 from crankmbs.display import displayed
 from crankmbs.errors import InputError
-from crankmbs.figures.style import COLOURS, STYLE, caption, logarithmic, tiles
+from crankmbs.figures.style import COLOURS, STYLE, caption, label_contours, logarithmic, tiles
 from crankmbs.numerics.arrays import Array
 from crankmbs.sweep.columns import Column
 from crankmbs.sweep.reading import Reading, amount_of, reading_of
@@ -33,7 +33,6 @@ _COLUMNS = 3
 _SIZES = (4.6, 4.2), (9.0, 6.5)  # inch: of a panel, and of the smallest figure
 _LEVELS = 12
 _ROUND = [1, 2, 5, 10]  # steps of ticks and levels, times a power of ten
-_EDGE = 0.06  # of a panel's side: the room that the label of a contour takes
 _CELLS = 500  # along an axis: finer than the points that are drawn
 
 
@@ -199,30 +198,8 @@ def _contours(ax: Axes, at: tuple[_Axis, _Axis], drawn: _Drawn, levels: Array) -
         ax.legend(loc="upper right")
     x.along(ax.xaxis)
     y.along(ax.yaxis)
-    parts = [part for path in lines.get_paths() for part in path.to_polygons(closed_only=False)]
-    places = _places(ax, list(map(np.asarray, parts)))
-    ax.clabel(lines, manual=places, fmt=lambda level: f"{level:.6g}", fontsize=11)
+    label_contours(ax, lines, lambda level: f"{level:.6g}", fontsize=11)
     return filled
-
-
-def _places(ax: Axes, lines: list[Array]) -> list[tuple[float, float]]:
-    """Where the labels of contours stand: in the middle of what is clear of the edges, none beside
-    another.
-
-    lines : each of shape (n, 2), in the units of the axes
-    """
-    to_axes = ax.transScale + ax.transLimits
-    places: list[tuple[float, float]] = []
-    taken: list[Array] = []
-    for line in lines:
-        points = to_axes.transform(line)
-        inside = np.flatnonzero(np.all(np.abs(points - 0.5) < 0.5 - _EDGE, axis=1))
-        if len(inside) and np.max(np.ptp(points, axis=0)) > 2.0 * _EDGE:
-            k = inside[len(inside) // 2]
-            if all(np.max(np.abs(points[k] - other)) > _EDGE for other in taken):
-                taken.append(points[k])
-                places.append((float(line[k, 0]), float(line[k, 1])))
-    return places
 
 
 def _amount(drawn: _Drawn) -> str:
