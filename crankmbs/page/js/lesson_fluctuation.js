@@ -52,7 +52,7 @@ class Fall {
         { name: "W / (J ω²)", style: "exact", x: inertias, y: textbook },
       ],
       of: () => [flywheel, 100 * cycle.fluctuation],
-      holds: { y: [0] },
+      holds: { x: [0], y: [0] },
     })];
   }
 
