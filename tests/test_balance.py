@@ -157,9 +157,19 @@ def test_a_scene_with_its_counterweights_has_the_force_that_was_said(name, tmp_p
     assert float(peak) == pytest.approx(largest, rel=1e-5)
 
 
-def test_counterweights_beside_the_reference_line_have_no_centre_of_mass():
-    with pytest.raises(InputError, match="at 150 degrees, do not lie along the crank's reference"):
-        _ = balance(load_scene("v_twin")).crank
+def test_counterweights_beside_the_reference_line_have_no_centre_of_mass(tmp_path, monkeypatch):
+    scene = load_scene("v_twin").with_(run__until="2 cycles")
+    beside = balance(scene)
+    with pytest.raises(InputError, match="at 150 degrees, do not lie along.* add 30 degrees to"):
+        _ = beside.crank
+    cylinders = [{"phase": f"{p} deg", "bank": f"{b} deg"} for p, b in ((30, -30), (330, 30))]
+    turned = balance(scene.with_(layout__cylinders=cylinders, start__angle="-30 deg"))
+    assert turned.crank["center_of_mass"] == pytest.approx(-0.0414144 / 9.0, rel=1e-5)
+    for one, other in zip(beside.remaining, turned.remaining, strict=True):
+        assert one.after.value == pytest.approx(other.after.value, rel=1e-9)
+    monkeypatch.chdir(tmp_path)
+    refused("balance", "v_twin", "--no-figures", "-o", "mine.toml")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_on_the_command_line(tmp_path, monkeypatch):

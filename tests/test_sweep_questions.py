@@ -348,6 +348,18 @@ def test_the_commands_draw_and_solve(tmp_path):
     assert "is one file, and 2 figures come" in refused("plot", store, *shown, "-o", one)
 
 
+def test_a_figure_of_a_printed_name_has_a_plain_file_name(grid, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    sweep(SCENE, {"crank.inertia": [0.2, 0.3]}, out="s.zarr")
+    shown = "coefficient of fluctuation, (max - min)/mean [1]", "|side force| [N]"
+    done = crankmbs_("plot", "s.zarr", *(word for name in shown for word in ("--show", name)))
+    assert done.exit_code == 0, done.output
+    assert {file.name for file in (tmp_path / "results" / "s").iterdir()} == {
+        "coefficient_of_fluctuation_max_min_mean_1.png",
+        "side_force_N.png",
+    }
+
+
 def test_the_command_solves():
     vary = ["--vary", "rod.length=0.12..0.2 m"]
     done = crankmbs_("solve", "yi_diesel", *vary, "--for", "side thrust by S1 = 25 %")

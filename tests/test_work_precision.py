@@ -115,6 +115,17 @@ def test_every_formulation_errs_by_no_more_than_twice_what_it_states(reference, 
     assert ("end only" in contender.name) == (tuple(found) == (END,))
 
 
+def test_at_an_end_on_a_dead_centre_what_is_stated_is_of_the_motion():
+    """One sample there has no peaks: forces and velocities are hardly more than their errors."""
+    scene = load_scene("propeller").with_(run__until="2 rev")
+    reference = reference_of(scene)
+    _, end_only, *_ = formulations_of(scene, reference)
+    assert end_only.name == "crank_angle, end only"
+    answer = end_only.run(1e-3)
+    (error,) = differences(answer.trace, reference.trace, reference.start).values()
+    assert error <= 2.0 * answer.stated + 1e-13 < 1e-6
+
+
 def test_a_formulation_that_stops_early_is_named(reference):
     done = dataclasses.replace(reference.result, status=1)
     (contender, *_) = formulations_of(SHORT, dataclasses.replace(reference, result=done))

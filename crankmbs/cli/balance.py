@@ -43,6 +43,7 @@ def balance(
     folder = results_folder(path, out)
     with progress("balancing"):
         weights = balanced(machine, part_of, cost_cap=cost_cap)
+        pasted = None if write is None else _pasted(machine, weights)  # before anything is written
         lines = [_report(path.stem, weights), "", *_crank(machine, weights, cost_cap)]
     written = ["balance.csv"]
     with together(folder) as part:
@@ -52,9 +53,9 @@ def balance(
 
             written.append(save_balance_figure(weights, part).name)
     lines += ["", wrote(folder, written)]
-    if write is not None:
+    if write is not None and pasted is not None:
         remark = f"with counterweights for {100.0 * weights.share:g} % of the reciprocating mass"
-        files = copy_scene(path, write, _pasted(machine, weights), remark)
+        files = copy_scene(path, write, pasted, remark)
         lines.append(f"wrote {', '.join(map(str, files))}")
     echo("\n".join(lines))
     if weights.result.status != 0:

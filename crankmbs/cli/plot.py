@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Annotated
 
@@ -49,7 +50,8 @@ def plot(
     drawn = {}
     for words in names:
         try:
-            drawn[file or f"{'_'.join(words.split())}.png"] = sweep_figure(data, words, limit, over)
+            name = file or f"{re.sub(r'[^a-z0-9.]+', '_', words, flags=re.I).strip('_')}.png"
+            drawn[name] = sweep_figure(data, words, limit, over)
         except InputError as error:
             raise InputError(f"--show {words}: {error}") from None
     with together(folder) as part:

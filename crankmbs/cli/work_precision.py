@@ -64,14 +64,16 @@ def _errors(outcome: WorkPrecision) -> str:
     """A line for every contender at every setting."""
     names = outcome.quantities
     headings = ["relative error", "setting", "stated", *names, "time [ms]", "runs", "evaluations"]
-    floors = [error_digits(outcome.reference.floors[name]) for name in names]
-    rows = [[row.contender, _setting(row), *_numbers(row, names)] for row in outcome.rows]
-    return table(headings, [*rows, ["reference itself", "", "", *floors, "", "", ""]])
+    floors = outcome.reference.floors
+    rows = [[row.contender, _setting(row), *_numbers(row, floors)] for row in outcome.rows]
+    of_reference = [error_digits(floors[name]) for name in names]
+    return table(headings, [*rows, ["reference itself", "", "", *of_reference, "", "", ""]])
 
 
-def _numbers(row: Row, names: tuple[str, ...]) -> list[str]:
-    errors = [_error(value) for value in (row.stated, *(row.errors.get(name) for name in names))]
-    return [*errors, _milliseconds(row.time), str(len(row.times)), str(row.evaluations)]
+def _numbers(row: Row, floors: dict[str, float]) -> list[str]:
+    errors = [_error(row.errors.get(name), floor) for name, floor in floors.items()]
+    costs = [_milliseconds(row.time), str(len(row.times)), str(row.evaluations)]
+    return [_error(row.stated), *errors, *costs]
 
 
 def _times(outcome: WorkPrecision) -> str:
@@ -104,8 +106,11 @@ def _setting(row: Row) -> str:
     return f"{row.knob} {row.setting:g}"
 
 
-def _error(value: float | None) -> str:
-    return "" if value is None else error_digits(value)
+def _error(value: float | None, floor: float = 0.0) -> str:
+    """An error; one that the reference's own hides only as less than that."""
+    if value is None:
+        return ""
+    return error_digits(value) if value >= floor else f"<{error_digits(floor)}"
 
 
 def _milliseconds(time: float | None) -> str:

@@ -81,11 +81,15 @@ class Balance:
         throws = np.array([np.exp(1j * (c.phase + c.bank)) for c in scene.cylinders])
         moment = complex(-np.array(self.per_throw) @ throws)
         if abs(moment.imag) > _ALONG * max(self.per_throw):
-            lies = f"{abs(moment):.6g} kg m at {np.degrees(np.angle(moment)):.6g} degrees"
+            at = float(np.degrees(np.angle(moment)))
+            turn = (at + 90.0) % 180.0 - 90.0  # to the nearer end of the reference line
+            more, less = ("from", "to") if turn > 0.0 else ("to", "from")
+            verb, back = ("take", "add") if turn > 0.0 else ("add", "take")
             raise InputError(
-                f"the counterweights together, {lies}, do not lie along the crank's reference "
-                "line, where center_of_mass is; turn that line by the phases of [layout] and the "
-                "angle of the start"
+                f"the counterweights together, {abs(moment):.6g} kg m at {at:.6g} degrees, do not "
+                "lie along the crank's reference line, where center_of_mass is; to turn that line "
+                f"{verb} {abs(turn):.6g} degrees {more} every phase of [layout], and {back} as "
+                f"much {less} the angle of the start"
             )
         radius = scene.crank.radius
         mass = scene.crank.mass or abs(float(moment.real)) / radius

@@ -12,7 +12,7 @@ from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 from crankmbs.work_precision.contender import Answer, Contender, ContenderFailed
 from crankmbs.work_precision.reference import Reference
-from crankmbs.work_precision.trace import trace_of
+from crankmbs.work_precision.trace import END, stated, trace_of
 
 __all__ = ["formulations_of"]
 
@@ -32,7 +32,7 @@ def formulations_of(scene: Scene, reference: Reference) -> tuple[Contender, ...]
             name=f"{formulation.name}, end only" if end_only else formulation.name,
             knob="rtol",
             settings=_LADDER if formulation.integrates else _ALGEBRA,
-            run=partial(_run, scene, formulation.name, end_only, reference.result.status),
+            run=partial(_run, scene, formulation.name, end_only, reference),
             reference=reference.trace,
         )
 
@@ -44,7 +44,9 @@ def formulations_of(scene: Scene, reference: Reference) -> tuple[Contender, ...]
     return tuple(contenders)
 
 
-def _run(scene: Scene, name: str, end_only: bool, status: int, rtol: float) -> Answer:
+def _run(
+    scene: Scene, name: str, end_only: bool, reference: Reference, rtol: float
+) -> Answer:
     until, until_time = scene.end
     whole = Extent(value=until, unit="s" if until_time else "rad")
     run = replace(scene.run, every=whole) if end_only else scene.run
@@ -52,8 +54,10 @@ def _run(scene: Scene, name: str, end_only: bool, status: int, rtol: float) -> A
         result = simulate(replace(scene, run=run), formulation=name, rtol=rtol)
     except CrankmbsError as error:
         raise ContenderFailed(str(error)) from None
-    if result.status != status:
+    if result.status != reference.result.status:
         raise ContenderFailed(result.message)
-    trace = trace_of(result)
-    answer = trace.end() if end_only else trace
-    return Answer(answer, result.cost.evaluations, result.error.estimated)
+    trace, evaluations = trace_of(result), result.cost.evaluations
+    if not end_only:
+        return Answer(trace, evaluations, result.error.estimated)
+    of_end = stated(result, reference.trace, reference.start)  # one sample has no peaks of its own
+    return Answer(trace.end(), evaluations, of_end[END])

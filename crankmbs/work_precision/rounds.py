@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
+from crankmbs.digits import error_digits
 from crankmbs.work_precision.contender import Answer, Contender, ContenderFailed
 from crankmbs.work_precision.trace import differences
 
@@ -114,7 +115,7 @@ def _last(answer: Answer, setting: float, spent: float, longest: float) -> str:
     if spent > longest:
         return f"took {spent:.0f} s"
     if answer.stated is not None and answer.stated > setting:
-        return f"states {answer.stated:.1e}, no less"
+        return f"states {error_digits(answer.stated)}, no less"
     return ""
 
 
