@@ -1,4 +1,4 @@
-"""What cells of the crank angle err, by the compiled loops, against the formula in arrays."""
+"""What cells of the crank angle err, against the formula in arrays."""
 
 from dataclasses import replace
 from unittest.mock import Mock

@@ -343,7 +343,7 @@ def test_free_rigid_bodies_feel_the_same():
 def test_a_figure_shows_the_force_over_the_angle():
     result = simulate(driven(KINDS["both ways"][0], until="2 rev", every="1 deg"))
     above, below = result.plot("forces").axes
-    assert "applied to piston" in above.get_ylabel()
+    assert "applied force" in above.get_ylabel()
     assert "wall" in below.get_ylabel()
     curve = max(above.lines, key=lambda line: len(line.get_ydata())).get_ydata()
     size = 1e3 if "[kN]" in above.get_ylabel() else 1.0

@@ -156,6 +156,14 @@ def test_time_as_the_variable_reaches_a_tight_tolerance(name, rtol):
     assert simulate(load_scene(name), formulation="minimal", rtol=rtol).error.estimated <= rtol
 
 
+@pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
+def test_samples_on_dead_centres_alone_have_no_velocity_of_the_piston_to_err(formulation):
+    scene = load_scene("propeller").with_(run__until="2 rev", run__every="1 rev")
+    result = simulate(scene, formulation=formulation, rtol=1e-6)
+    assert np.abs(result.data["piston_velocity"].values).max() < 1e-12
+    assert 0.0 < result.error.estimated <= 1e-6
+
+
 @pytest.mark.parametrize("load", [Quadratic(coefficient=1e-4), Viscous(coefficient=1e-3)])
 def test_tighter_costs_more(load):
     loaded = scene(PROPELLER, torque=(load,))

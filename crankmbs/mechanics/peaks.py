@@ -12,6 +12,7 @@ from crankmbs.numerics.arrays import Array
 __all__ = ["negligible", "peak", "relative_error", "relative_errors"]
 
 _UNITS = {name: about.units for name, about in EVERY.items()}
+_FAR_OUT = "velocity of a point of the crank"
 _NOTHING = 1e-10  # of the largest of the same unit; multibody's Newton iterations leave more rarely
 
 
@@ -52,9 +53,11 @@ def relative_errors(
     relative to its peak.
 
     The energy residual is a check and does not count, nor do sums in which the cylinders may
-    cancel; nor does what is `negligible`.
+    cancel; nor does what is `negligible`, a velocity of pistons beside that of a point of the crank
+    as far out as they are, as in samples on dead centres alone.
     """
     sizes = {**peaks, "crank_angle": turned}
-    ignored = negligible(sizes, _UNITS)
+    far_out = peaks.get("crank_speed", 0.0) * peaks.get("piston_position", 0.0)
+    ignored = negligible(sizes | {_FAR_OUT: far_out}, _UNITS | {_FAR_OUT: "m/s"}) - {_FAR_OUT}
     ignored |= SUMS | {"energy_residual"}
     return {name: errors[name] / size for name, size in sizes.items() if name not in ignored}

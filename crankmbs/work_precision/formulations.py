@@ -44,9 +44,7 @@ def formulations_of(scene: Scene, reference: Reference) -> tuple[Contender, ...]
     return tuple(contenders)
 
 
-def _run(
-    scene: Scene, name: str, end_only: bool, reference: Reference, rtol: float
-) -> Answer:
+def _run(scene: Scene, name: str, end_only: bool, reference: Reference, rtol: float) -> Answer:
     until, until_time = scene.end
     whole = Extent(value=until, unit="s" if until_time else "rad")
     run = replace(scene.run, every=whole) if end_only else scene.run
