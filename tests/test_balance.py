@@ -160,7 +160,7 @@ def test_a_scene_with_its_counterweights_has_the_force_that_was_said(name, tmp_p
 def test_counterweights_beside_the_reference_line_have_no_centre_of_mass(tmp_path, monkeypatch):
     scene = load_scene("v_twin").with_(run__until="2 cycles")
     beside = balance(scene)
-    with pytest.raises(InputError, match="at 150 degrees, do not lie along.* add 30 degrees to"):
+    with pytest.raises(InputError, match=r"at 150 degrees, do not lie along.* add 30 degrees to"):
         _ = beside.crank
     cylinders = [{"phase": f"{p} deg", "bank": f"{b} deg"} for p, b in ((30, -30), (330, 30))]
     turned = balance(scene.with_(layout__cylinders=cylinders, start__angle="-30 deg"))

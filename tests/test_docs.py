@@ -23,6 +23,7 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "docs" / "_ext"))
 import docstrings
 import hard
 import keys
+import made
 import names
 from blocks import DOCS, WIDTH, Reader, blocks, pages, printed
 
@@ -124,6 +125,18 @@ def test_every_command_variable_and_public_name_has_its_place():
     assert re.findall(r"^\| `(\w+)`", names.variables_page(), re.MULTILINE) == list(EVERY)
     shown = set(re.findall(r"^\.\. auto\w+:: crankmbs\.(\w+)$", names.python_page(), re.MULTILINE))
     assert shown == set(crankmbs.__all__) - {"figures", "lecture"}
+
+
+@pytest.mark.parametrize("page", made.PARTS)
+def test_what_is_made_of_a_page_stands_in_it(page):
+    """Build the manual to write it anew."""
+    assert "<!-- made -->" in PAGES[page]
+    assert made.with_part(PAGES[page], made.PARTS[page]()) == PAGES[page]
+
+
+def test_a_figure_that_is_made_stands_in_the_folder():
+    figures = {file.stem for file in (DOCS / "figures").glob("*.png")}
+    assert figures == {*made._FIGURES, "crank_pin"}
 
 
 def test_a_part_shows_the_types_of_its_fields():

@@ -1,5 +1,6 @@
 """What the manual shows of the project is made from it while it is built: tables of keys, commands
-and names, figures of shipped scenes, the lessons, a page that computes, and the source."""
+and names within the pages, figures that are not there, the lessons, a page that computes, and the
+source."""
 
 from __future__ import annotations
 
@@ -21,15 +22,18 @@ from crankmbs.storage.files import text_in_one_move
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
-__all__ = ["setup"]
+__all__ = ["PARTS", "setup", "with_part"]
 
-_PAGES = {
-    "keys": keys_page,
-    "commands": commands_page,
-    "variables": variables_page,
-    "hard": hard_page,
-    "python": python_page,
+PARTS = {
+    "reference/keys.md": keys_page,
+    "reference/commands.md": commands_page,
+    "reference/result.md": variables_page,
+    "reference/python.md": python_page,
+    "validation/hard.md": hard_page,
 }
+"""Pages of which a part is made, and what makes it; it stands in the page, to be read without a
+build, between two comments."""
+_PART = re.compile(r"(<!-- made -->\n\n).*?(\n<!-- to here -->\n)", re.DOTALL)
 _VALIDATION = ("REPORT", "MEASURED", "CLAIMS", "ERRATA", "MUTANTS", "BIBLIOGRAPHY")
 _ANCHOR = re.compile(r'^(#+ )<a id="([^"]+)"></a>', re.MULTILINE)
 _FIGURES: dict[str, tuple[str, dict[str, object], str]] = {  # scene, changes, kind of the figure
@@ -48,17 +52,31 @@ _FIGURES: dict[str, tuple[str, dict[str, object], str]] = {  # scene, changes, k
 }
 
 
+def with_part(page: str, part: str) -> str:
+    """A page with a part of it made anew.
+
+    >>> with_part("a\\n<!-- made -->\\n\\nb\\n\\n<!-- to here -->\\n", "c\\n")
+    'a\\n<!-- made -->\\n\\nc\\n\\n<!-- to here -->\\n'
+    """
+    return _PART.sub(lambda at: f"{at[1]}{part.strip()}\n{at[2]}", page)
+
+
 def _make(app: Sphinx) -> None:
-    made = Path(app.srcdir) / "_made"
-    for name, text in _PAGES.items():
-        (made / f"{name}.md").write_text(text(), encoding="utf-8")
+    docs = Path(app.srcdir)
+    made = docs / "_made"
+    for name, part in PARTS.items():
+        page = (docs / name).read_text(encoding="utf-8")
+        if with_part(page, part()) != page:
+            (docs / name).write_text(with_part(page, part()), encoding="utf-8")
     for name in _VALIDATION:
         page = (made.parents[1] / "validation" / f"{name}.md").read_text(encoding="utf-8")
         (made / f"{name}.md").write_text(_linked(page), encoding="utf-8")
     mpl.use("agg")
     for name, (scene, changes, kind) in _FIGURES.items():
-        result = crankmbs.simulate(crankmbs.load_scene(scene).with_(**changes))
-        result.plot(kind).savefig(made / f"{name}.png", dpi=110)
+        file = docs / "figures" / f"{name}.png"
+        if not file.exists():
+            result = crankmbs.simulate(crankmbs.load_scene(scene).with_(**changes))
+            result.plot(kind).savefig(file, dpi=110)
     write_lessons(made / "pages" / "lessons")
     demo = page_of(crankmbs.load_scene("yi_diesel_free"), "yi_diesel_free")
     text_in_one_move(made / "pages" / "demo.html", demo)
