@@ -10,6 +10,7 @@ _DISPLAYED = {
     "rad/s": (RPM, "rpm"),
     "rad": (DEGREE, "deg"),
     "Pa": (BAR, "bar"),
+    "N/m^2": (1e6, "N/mm^2"),  # of bearings
     "W": (1e3, "kW"),
     "m": (1e-3, "mm"),
 }

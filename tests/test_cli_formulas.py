@@ -170,7 +170,7 @@ def test_a_formula_that_fails_on_the_run_leaves_nothing_behind(mine, tmp_path, a
     ("arguments", "message"),
     [
         (["--causes", "series, two masses"], '"two masses" came; did you mean "two-mass rod"?'),
-        (["--causes", ""], "a cause is series, datum, constant speed, two-mass rod, gravity, fri"),
+        (["--causes", ""], "--causes: a cause is series, datum, constant speed, two-mass rod,"),
         (["--causes", "series,series"], 'each cause once; "series" came twice'),
         (
             ["--formula", "{0}:imep_none", "--formula", "{0}:imep_none"],

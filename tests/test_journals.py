@@ -135,7 +135,7 @@ def test_measures_and_report_name_every_journal_with_its_specific_load(tmp_path)
     assert pins[0].specific_mean.value == pytest.approx(pins[0].mean.value / (0.056 * 0.031))
     text = report("diesel", result, found)
     assert "main journal 5" in text
-    assert "specific load over the last cycle [N/mm2]" in text
+    assert "specific load over the last cycle [N/mm^2]" in text
     assert "statically determinate" in text
     result.save(tmp_path)
     again = Result.load(tmp_path / "result.nc")
@@ -288,4 +288,4 @@ def test_journals_of_one_curve_are_drawn_once_and_every_panel_names_its_own():
     pins = ["cylinders 1, 2, 3, 4"]
     assert names == [journals, journals, pins, pins]
     assert not figure.legends
-    assert "on the curve of main journal 1" in figure.get_supxlabel()
+    assert "crank angle [deg] of main journal 1" in figure.get_supxlabel().replace("\n", " ")

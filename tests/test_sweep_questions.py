@@ -1,5 +1,6 @@
 """What a sweep answers: which value gives what is wanted, or the least; and its figures."""
 
+import math
 import re
 
 import numpy as np
@@ -340,6 +341,11 @@ def test_the_commands_draw_and_solve(tmp_path):
     shown = ["--show", "side thrust by S1", "--show", "peak side force"]
     assert crankmbs_("plot", store, *shown, "-o", str(tmp_path / "f")).exit_code == 0
     assert names(tmp_path / "f") == {"side_thrust_by_S1.png", "peak_side_force.png"}
+    metres = crankmbs_("sweep", "yi_diesel", "--vary", "rod.length=100..200:2", "-o", f"{store}_m")
+    assert "2 reached their end\nwarning: rod.length: a rod of 100 m is " in metres.stdout
+    assert "warning" not in done.stdout
+    said = refused("plot", store, *shown[:2], "--limit", "5 N", "-o", str(tmp_path / "g"))
+    assert said.startswith("--show side thrust by S1: --limit: ")
     assert "--show speed: " in refused("plot", store, "--show", "speed", "-o", str(tmp_path / "g"))
     assert not (tmp_path / "g").exists()
     one = str(tmp_path / "one.png")
@@ -358,6 +364,17 @@ def test_a_figure_of_a_printed_name_has_a_plain_file_name(grid, tmp_path, monkey
         "coefficient_of_fluctuation_max_min_mean_1.png",
         "side_force_N.png",
     }
+
+
+def test_a_measure_that_is_zero_has_a_derivative_and_no_share(tmp_path):
+    scene = load_scene("yi_diesel").with_(run__until="1 cycle")
+    slope = sensitivity(scene, "motion.speed", "speed_gain")
+    assert slope.reached.value == 0.0
+    assert math.isnan(slope.elasticity)
+    words = ["--vary", "motion.speed", "--of", "drift of the speed"]
+    done = crankmbs_("sensitivity", "yi_diesel", *words)
+    assert done.exit_code == 0, done.output
+    assert re.search(r"drift of the speed \[rpm\] .* -$", done.stdout, re.MULTILINE)
 
 
 def test_the_command_solves():

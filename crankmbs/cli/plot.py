@@ -53,7 +53,8 @@ def plot(
             name = file or f"{re.sub(r'[^a-z0-9.]+', '_', words, flags=re.I).strip('_')}.png"
             drawn[name] = sweep_figure(data, words, limit, over)
         except InputError as error:
-            raise InputError(f"--show {words}: {error}") from None
+            text = str(error).replace("limit: ", "--limit: ", 1)
+            raise InputError(f"--show {words}: {text}") from None
     with together(folder) as part:
         for name, figure in drawn.items():
             figure.savefig(part / name, format="png")

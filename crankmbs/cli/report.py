@@ -61,7 +61,7 @@ def comparison(result: Result, confirmation: Confirmation) -> str:
             *([] if not lines else ["", table(headings, lines), ""]),
             f"at {len(confirmation.states[0].size)} states of the run accelerations and joint "
             f"forces agree to {confirmation.at_states:.0e} of the peak",
-            "that nothing builds up over the whole run, --formulation minimal confirms",
+            "that nothing builds up over the whole run is for --formulation minimal to show",
             *confirmation.missing,
         ]
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import nan
 from typing import TYPE_CHECKING, Annotated
 
 from typer import Exit, Option, echo
@@ -76,7 +77,7 @@ def _derivatives(scene: Scene, names: list[str], measures: list[str]) -> str:
                     *cells(slope.derivative, slope.measure.about.units, slope.units),
                     digits(
                         slope.elasticity,
-                        slope.derivative.error * abs(slope.value / slope.reached.value),
+                        slope.derivative.error * abs(slope.value / (slope.reached.value or nan)),
                     ),
                 ]
             )

@@ -6,7 +6,7 @@ import math
 import shlex
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,7 +14,7 @@ from typer import Exit, Option, echo
 
 from crankmbs.cli.options import SceneName
 from crankmbs.cli.text import cells, heading, table, with_unit
-from crankmbs.errors import InputError, shown
+from crankmbs.errors import CrankmbsError, InputError, shown
 
 if TYPE_CHECKING:
     from crankmbs.sweep.plan import Plan
@@ -215,10 +215,26 @@ def _report(plan: Plan, summary: Summary) -> str:
     for status, (count, message) in sorted(summary.ended.items(), key=lambda item: item[0] != 0):
         first = "" if status == 0 else f"; the first: {message}"
         lines.append(f"{count} {_ENDED[status]}{first}")
+    lines += _warnings(plan)
     if summary.bounds:
         headings = ["over all cases", "least", "largest", "num. error at most"]
         lines += ["", table(headings, [_bounds(bounds) for bounds in summary.bounds])]
     return "\n".join(lines)
+
+
+def _warnings(plan: Plan) -> list[str]:
+    """What is not plausible of the first and the last case, and is of the scene itself."""
+    from crankmbs.measures.plausible import warnings
+    from crankmbs.sweep.scenes import scene_of
+
+    known = {text.partition(":")[0] for text in warnings(plan.scene)}
+    lines: dict[str, None] = {}
+    for number in (0, plan.cases.count - 1):
+        (values,) = plan.cases.values(range(number, number + 1))
+        with suppress(CrankmbsError):  # what cannot be built is counted
+            texts = warnings(scene_of(plan.scene, plan.cases.names, values))
+            lines |= dict.fromkeys(t for t in texts if t.partition(":")[0] not in known)
+    return [f"warning: {text}" for text in lines]
 
 
 def _bounds(bounds: Bounds) -> list[str]:

@@ -10,6 +10,7 @@ from typer import Exit, Option, echo
 from crankmbs.cli.folder import writable, wrote
 from crankmbs.cli.options import CostCap, NoFigures, Rtol, SceneName, Until
 from crankmbs.cli.progress import progress
+from crankmbs.errors import InputError
 from crankmbs.storage.files import together
 
 if TYPE_CHECKING:
@@ -78,7 +79,10 @@ def _chain(causes: str | None, scene: Scene) -> list[str] | None:
     from crankmbs.compare import checked_chain
 
     chain = None if causes is None else [name.strip() for name in causes.split(",")]
-    checked_chain(chain, scene)
+    try:
+        checked_chain(chain, scene)
+    except InputError as error:
+        raise InputError(str(error).replace("chain: ", "--causes: ", 1)) from None
     return chain
 
 

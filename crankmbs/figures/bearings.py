@@ -34,8 +34,8 @@ def bearings_figure(view: View) -> Figure:
         columns = min(len(ax.get_legend_handles_labels()[1]), 4)
         ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=columns)
     about = (
-        f"bearing loads over the {view.window.kind}; dots: above crank angle [deg], on the curve "
-        "of main journal 1, below cycle angle [deg], on that of cylinder 1 or of its pin"
+        f"bearing loads over the {view.window.kind}; dots: above crank angle [deg] of main "
+        "journal 1, below cycle angle [deg] of cylinder 1"
     )
     exact = view.exactness("main_journal_force", "crank_pin_force")
     footer(figure, view.result, about, exact)

@@ -58,8 +58,8 @@ def names_of(scene: Scene) -> dict[str, Named]:
         names[f"{key}_peak"] = Named("N", f"largest {force}", of)
         names[f"{key}_mean"] = Named("N", f"mean {force}", of)
         if shell_area(scene, joint) is not None:
-            names[f"{key}_specific_peak"] = Named("Pa", f"largest specific load, {joint}", of)
-            names[f"{key}_specific_mean"] = Named("Pa", f"mean specific load, {joint}", of)
+            names[f"{key}_specific_peak"] = Named("N/m^2", f"largest specific load, {joint}", of)
+            names[f"{key}_specific_mean"] = Named("N/m^2", f"mean specific load, {joint}", of)
     for quantity in (*quantities_of(scene)[len(joints) :], *SPEEDS):
         of = "cylinder" if quantity.number else ""
         names[_key(quantity.name)] = Named(quantity.units, quantity.name, of)

@@ -51,7 +51,7 @@ _WHOLE_RUN = [
     "cycle angle [deg]",
     "cycle",
 ]
-_MPA = 1e6  # Pa in N/mm2
+_MPA = 1e6  # Pa in N/mm^2
 _SAME = 1e-9  # of a piston speed: no more than rounding
 
 
@@ -90,7 +90,7 @@ def measure_tables(measures: Measures) -> list[Table]:
         Table([window, *FORCE_HEADINGS], peak_rows(measures)),
     ]
     if specific := _specific(measures):
-        name = f"specific load {window} [N/mm2]"
+        name = f"specific load {window} [N/mm^2]"
         parts.append(Table([name, "peak", _ERROR, "mean", _ERROR], specific))
     return parts
 

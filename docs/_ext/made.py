@@ -53,10 +53,10 @@ _FIGURES: dict[str, tuple[str, dict[str, object], str]] = {  # scene, changes, k
 
 
 def with_part(page: str, part: str) -> str:
-    """A page with a part of it made anew.
+    r"""A page with a part of it made anew.
 
-    >>> with_part("a\\n<!-- made -->\\n\\nb\\n\\n<!-- to here -->\\n", "c\\n")
-    'a\\n<!-- made -->\\n\\nc\\n\\n<!-- to here -->\\n'
+    >>> with_part("a\n<!-- made -->\n\nb\n\n<!-- to here -->\n", "c\n")
+    'a\n<!-- made -->\n\nc\n\n<!-- to here -->\n'
     """
     return _PART.sub(lambda at: f"{at[1]}{part.strip()}\n{at[2]}", page)
 
