@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import h5py
 import numpy as np
 import pytest
+from command_line import crankmbs_
 from test_fuel import FOUR, FUELS, THIN_GAS, exact, fuelled
 from test_windows import FREE, wheel
 
@@ -109,6 +110,17 @@ def test_rest_start_and_reversal_by_closed_form(formulation):
         "moves off forwards",
         "turns back, backwards from here",
     ]
+
+
+def test_the_command_names_the_first_firing_and_the_fuel_cut(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name, until, event in (
+        ("run_up", "0.1 s", "180 deg, 272.632 rpm: first firing"),
+        ("run_down", "0.3 s", "1620 deg, 1413.55 rpm: fuel cut"),
+    ):
+        said = crankmbs_("run", name, "--until", until, "--no-figures").stdout
+        assert event in said
+        assert "decides q" not in said
 
 
 def test_a_run_that_ends_at_rest_ends_with_it():

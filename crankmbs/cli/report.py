@@ -96,8 +96,10 @@ def _about(result: Result, measures: Measures) -> str:
 
 
 def _events(result: Result) -> list[str]:
-    """How many events there are, and the first of them; decisions on the fuel only where they are
-    all there is."""
+    """How many events there are, and the first of them; of decisions on the fuel only the first
+    that fires and the cut, or all where they are all there is."""
+    from crankmbs.result.event_words import event_words
+
     events = result.event_table
     fuel = events.values("kind") == "fuel"
     count, left_out = fuel.size, events.left_out
@@ -105,13 +107,15 @@ def _events(result: Result) -> list[str]:
         return []
     decided = f", {np.count_nonzero(fuel)} of them decisions on the fuel" if fuel.any() else ""
     lines = [f"{count}{decided}{'; ' if left_out else ''}{left_out}"]
-    rows = np.flatnonzero(~fuel) if not fuel.all() else np.arange(count)
+    words = event_words(result)
+    rows = np.array([k for k in range(count) if words[k]] or range(count))
     for row in rows[:_FIRST].tolist():
         time, angle, speed = (
             float(events.values(name)[row]) for name in ("time", "crank_angle", "crank_speed")
         )
         where = f"{time:.6g} s, {math.degrees(angle):.6g} deg, {speed / RPM:.6g} rpm"
-        lines.append(f"{where}: {events.values('text')[row]}")
+        text = events.values("text")[row]
+        lines.append(f"{where}: {words[row] or text if fuel[row] else text}")
     lines += ["..."] if len(rows) > _FIRST else []
     return [f"{'' if k else 'events':<12} {line}" for k, line in enumerate(lines)]
 
