@@ -25,8 +25,8 @@ _STEEL = 7850.0  # kg/m3
 
 
 class _Sized(NamedTuple):
-    """What moves in a cylinder, and its piston's diameter, without area twice the stroke [m], as
-    the slide of a press may be wide."""
+    """What moves in a cylinder, and its piston's diameter [m], without area three times the stroke,
+    as the slide of a press may be wide."""
 
     gear: RunningGear
     diameter: float
@@ -42,7 +42,7 @@ def warnings(scene: Scene) -> tuple[str, ...]:
     sentences = []
     for number, gear in enumerate(scene.running_gear, start=1):
         area = gear.piston.gas_area
-        sized = _Sized(gear, 2.0 * gear.stroke if area is None else math.sqrt(4.0 * area / math.pi))
+        sized = _Sized(gear, 3.0 * gear.stroke if area is None else math.sqrt(4.0 * area / math.pi))
         where = "" if gear == common else f"cylinder[{number}]: "
         sentences += [f"{where}{sentence}" for rule in _OF_GEAR for sentence in rule(sized)]
     sentences += [sentence for rule in _OF_SCENE for sentence in rule(scene)]
