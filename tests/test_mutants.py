@@ -29,7 +29,11 @@ def test_there_are_enough_and_names_are_unique():
 @pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: mutant.name)
 def test_a_mutant_changes_one_place_of_its_file_and_is_python(mutant):
     source = (ROOT / mutant.file).read_text(encoding="utf-8")
-    assert ast.dump(ast.parse(mutant.applied(source))) != ast.dump(ast.parse(source))
+    changed = mutant.applied(source)
+    if mutant.file.endswith(".py"):
+        assert ast.dump(ast.parse(changed)) != ast.dump(ast.parse(source))
+    else:  # a template, that its guards fill in
+        assert changed != source
 
 
 def test_a_text_that_is_not_there_once_is_refused():
