@@ -1,10 +1,12 @@
 """Measures are taken by the names under which they are printed."""
 
 import math
+import re
 
 import pytest
+from command_line import crankmbs_
 
-from crankmbs import Bearings, InputError, Shell, load_scene, simulate
+from crankmbs import Bearings, InputError, Shell, load_scene, sensitivity, simulate, sweep
 from crankmbs.report.rows import tables
 from crankmbs.sweep.columns import columns_of, row_of
 from crankmbs.sweep.reading import reading_of
@@ -72,3 +74,27 @@ def test_a_name_is_of_what_it_says():
     assert words.quantity == "side thrust"
     with pytest.raises(InputError, match="force, 5: there are 4; give a number from 1 to 4"):
         value("crank pin 5")
+
+
+def test_a_figure_of_a_printed_name_has_a_plain_file_name(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    scene = load_scene("propeller").with_(run__until="settled")
+    sweep(scene, {"crank.inertia": [0.2, 0.3]}, out="s.zarr")
+    shown = "coefficient of fluctuation, (max - min)/mean [1]", "|side force| [N]"
+    done = crankmbs_("plot", "s.zarr", *(word for name in shown for word in ("--show", name)))
+    assert done.exit_code == 0, done.output
+    assert {file.name for file in (tmp_path / "results" / "s").iterdir()} == {
+        "coefficient_of_fluctuation_max_min_mean_1.png",
+        "side_force_N.png",
+    }
+
+
+def test_a_measure_that_is_zero_has_a_derivative_and_no_share():
+    scene = load_scene("yi_diesel").with_(run__until="1 cycle")
+    slope = sensitivity(scene, "motion.speed", "speed_gain")
+    assert slope.reached.value == 0.0
+    assert math.isnan(slope.elasticity)
+    words = ["--vary", "motion.speed", "--of", "drift of the speed"]
+    done = crankmbs_("sensitivity", "yi_diesel", *words)
+    assert done.exit_code == 0, done.output
+    assert re.search(r"drift of the speed \[rpm\] .* -$", done.stdout, re.MULTILINE)

@@ -1,6 +1,5 @@
 """What a sweep answers: which value gives what is wanted, or the least; and its figures."""
 
-import math
 import re
 
 import numpy as np
@@ -352,29 +351,6 @@ def test_the_commands_draw_and_solve(tmp_path):
     assert crankmbs_("plot", store, *shown[:2], "-o", one).stdout == f"wrote {one}\n"
     assert (tmp_path / "one.png").read_bytes()[1:4] == b"PNG"
     assert "is one file, and 2 figures come" in refused("plot", store, *shown, "-o", one)
-
-
-def test_a_figure_of_a_printed_name_has_a_plain_file_name(grid, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    sweep(SCENE, {"crank.inertia": [0.2, 0.3]}, out="s.zarr")
-    shown = "coefficient of fluctuation, (max - min)/mean [1]", "|side force| [N]"
-    done = crankmbs_("plot", "s.zarr", *(word for name in shown for word in ("--show", name)))
-    assert done.exit_code == 0, done.output
-    assert {file.name for file in (tmp_path / "results" / "s").iterdir()} == {
-        "coefficient_of_fluctuation_max_min_mean_1.png",
-        "side_force_N.png",
-    }
-
-
-def test_a_measure_that_is_zero_has_a_derivative_and_no_share(tmp_path):
-    scene = load_scene("yi_diesel").with_(run__until="1 cycle")
-    slope = sensitivity(scene, "motion.speed", "speed_gain")
-    assert slope.reached.value == 0.0
-    assert math.isnan(slope.elasticity)
-    words = ["--vary", "motion.speed", "--of", "drift of the speed"]
-    done = crankmbs_("sensitivity", "yi_diesel", *words)
-    assert done.exit_code == 0, done.output
-    assert re.search(r"drift of the speed \[rpm\] .* -$", done.stdout, re.MULTILINE)
 
 
 def test_the_command_solves():
