@@ -211,7 +211,7 @@ def test_the_command(tmp_path, monkeypatch):
     constant = '\n[[torque]]\nkind = "constant"\ntorque = "-30 N m"\n'
     (tmp_path / "braked.toml").write_text(free.split("[[torque]]")[0] + constant)
     braked = crankmbs_("flywheel", "braked.toml", "--no-figures").output
-    assert "the scene's, and a constant 8.17257 N m, which balances gas, gravity" in braked
+    assert "the scene's, with a constant 8.17257 N m, which balances gas, gravity" in braked
     far = crankmbs_("flywheel", "yi_diesel_free", "--fluctuation", "150 %")
     assert far.exit_code == 3
     assert "out of reach" in far.output

@@ -171,7 +171,7 @@ def _load(scene: Scene, wheel: Flywheel) -> str:
     what = f"a constant {digits(balance)} N m, which balances gas, gravity and friction"
     if not scene.torque:
         return f"none in the scene; {what}"
-    return f"the scene's, and {what} beside it" if balance else "the scene's"
+    return f"the scene's, with {what}" if balance else "the scene's"
 
 
 def _balance(scene: Scene, wheel: Flywheel) -> float:

@@ -114,8 +114,8 @@ def _events(result: Result) -> list[str]:
             float(events.values(name)[row]) for name in ("time", "crank_angle", "crank_speed")
         )
         where = f"{time:.6g} s, {math.degrees(angle):.6g} deg, {speed / RPM:.6g} rpm"
-        text = events.values("text")[row]
-        lines.append(f"{where}: {words[row] or text if fuel[row] else text}")
+        event = words[row] if fuel[row] else ""
+        lines.append(f"{where}: {event or events.values('text')[row]}")
     lines += ["..."] if len(rows) > _FIRST else []
     return [f"{'' if k else 'events':<12} {line}" for k, line in enumerate(lines)]
 
