@@ -173,7 +173,7 @@ def test_saved_and_loaded_it_is_the_same_motion(name, tmp_path):
         time = np.linspace(one.begin, one.end, 301)
         before, after = (motion.at(time, in_time=True) for motion in (one, other))
         rows = [(getattr(before, name), getattr(after, name)) for name in _ROWS]
-        rows += [(before.own[name], after.own[name]) for name in before.own]
+        rows += [(before.computed[name], after.computed[name]) for name in before.computed]
         for old, new in rows:
             size = float(np.max(np.abs(old)))
             np.testing.assert_allclose(new, old, rtol=0.0, atol=1e-12 * size)

@@ -35,7 +35,7 @@ LEFT = {"function", "governor", "random firing", "rest"}  # to Python
 def steady(scene):
     """The scene with those of its forces that are the same in every cycle, all the time."""
     whole = {"after": None, "until": None, "from_speed": None, "until_speed": None}
-    kept = [one for one in scene.force if one.law.over_time is None and one.law.given is None]
+    kept = [one for one in scene.force if one.law.over_time is None and one.law.python is None]
     return replace(scene, force=tuple(replace(one, **whole) for one in kept))
 
 

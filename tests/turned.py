@@ -10,7 +10,7 @@ from crankmbs.design import freed
 from crankmbs.mechanics.carried import carried_over
 from crankmbs.page.knobs import AS_GIVEN, FIRING_ORDERS, knobs_of
 from crankmbs.scene.drives import Motion, Oscillation
-from crankmbs.scene.gas import Gas, Polytrope, PressureGiven
+from crankmbs.scene.gas import AnyPressure, Gas, Polytrope
 from crankmbs.scene.parts import Layout
 from crankmbs.scene.run import Extent
 from crankmbs.scene.scene import Scene
@@ -123,7 +123,7 @@ def _pressed(gas: Gas, factor: float) -> Gas:
     return dataclasses.replace(gas, indicator=dataclasses.replace(gas.indicator, **new))
 
 
-def _pressed_more(pressure: PressureGiven, factor: float) -> PressureGiven:
+def _pressed_more(pressure: AnyPressure, factor: float) -> AnyPressure:
     if isinstance(pressure, float):
         return factor * pressure
     if isinstance(pressure, Table):

@@ -3,7 +3,7 @@
 import math
 
 from crankmbs.mechanics.pressure import PeriodicPressure, pressures_of
-from crankmbs.scene.gas import Gas, PressureGiven, tables_of
+from crankmbs.scene.gas import AnyPressure, Gas, tables_of
 from crankmbs.scene.loads import AngleTable, Constant, Quadratic, SpeedTable, TimeTable, Viscous
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import CylinderTable, Table
@@ -34,7 +34,7 @@ def crank_ends_of(scene: Scene) -> tuple[Pressure, ...]:
     return found if isinstance(found, tuple) else (found,) * len(scene.cylinders)
 
 
-def _given(scene: Scene, gas: Gas, source: PressureGiven) -> Pressure | tuple[Pressure, ...]:
+def _given(scene: Scene, gas: Gas, source: AnyPressure) -> Pressure | tuple[Pressure, ...]:
     if isinstance(source, float):
         return _table(gas, Table((0.0, gas.period / 3.0, gas.period / 1.5), (source,) * 3))
     if isinstance(source, Table):

@@ -50,10 +50,10 @@ def comparison(result: Result, confirmation: Confirmation) -> str:
     for row in confirmation.period:
         largest, sample, column = row.largest
         cylinder = f" {column + 1}" if several and row.size.shape[1] > 1 else ""
-        where = degrees_within(float(row.crank_angle[sample]), result.scene.period)
+        angle = degrees_within(float(row.crank_angle[sample]), result.scene.period)
         numbers = [error_digits(size) for size in (largest, *row.errors)]
         name = f"{row.quantity}{cylinder} [{row.units}]"
-        lines.append([name, numbers[0], where, *numbers[1:]])
+        lines.append([name, numbers[0], angle, *numbers[1:]])
     return "\n".join(
         [
             "",
@@ -113,17 +113,17 @@ def _events(result: Result) -> list[str]:
         time, angle, speed = (
             float(events.values(name)[row]) for name in ("time", "crank_angle", "crank_speed")
         )
-        where = f"{time:.6g} s, {math.degrees(angle):.6g} deg, {speed / RPM:.6g} rpm"
+        place = f"{time:.6g} s, {math.degrees(angle):.6g} deg, {speed / RPM:.6g} rpm"
         event = words[row] if fuel[row] else ""
-        lines.append(f"{where}: {event or events.values('text')[row]}")
+        lines.append(f"{place}: {event or events.values('text')[row]}")
     lines += ["..."] if len(rows) > _FIRST else []
     return [f"{'' if k else 'events':<12} {line}" for k, line in enumerate(lines)]
 
 
 def _error_line(result: Result) -> str:
     error, gas = result.error, result.scene.gas
-    given = gas is not None and bool(gas.tables)
-    alone = "; errors of the given pressures are not in it" if given else ""
+    has_tables = gas is not None and bool(gas.tables)
+    alone = "; errors of the given pressures are not in it" if has_tables else ""
     return f"{'num. error':<12} {error.estimated:.1e} relative, {error.asked:.0e} asked for{alone}"
 
 

@@ -113,8 +113,8 @@ def _user_formulas(comparison: Comparison, split: Budget) -> str:
     for row in comparison.rows:
         if row.reference not in {CLOSED_FORM, *LECTURES, *by}:
             share = digits(percent(row.size.largest, row.peak), most=3)
-            where = f"of the peak, at {math.degrees(row.size.angle):.0f} degrees"
-            parts.append(f"{row.quantity} by {row.reference}: off by up to {share} % {where}")
+            place = f"of the peak, at {math.degrees(row.size.angle):.0f} degrees"
+            parts.append(f"{row.quantity} by {row.reference}: off by up to {share} % {place}")
     return "\n".join(parts).rstrip()
 
 

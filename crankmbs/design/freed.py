@@ -143,8 +143,10 @@ def _at_any_speed(scene: Scene) -> tuple[Scene, bool]:
             more = push.parts.function(np.zeros_like(at), at, np.full_like(at, start.speed))
             terms = replace(terms, torque=terms.torque + more)
     mean = float(terms.width @ (terms.torque @ grid.rule.weights)) / period
-    given = sum(float(load.parts.over_time(0.0)) for load in scene.torque if load.parts.over_time)
-    loads = (*scene.torque, Constant(torque=-mean - given))
+    over_time = sum(
+        float(load.parts.over_time(0.0)) for load in scene.torque if load.parts.over_time
+    )
+    loads = (*scene.torque, Constant(torque=-mean - over_time))
     cycle = period_of(grid, terms, branch_of(loads, 0.0, 0.0, rising=True), sense)
     least, duration = -float(cycle.shift.min()), period / abs(start.speed)
 
@@ -156,7 +158,7 @@ def _at_any_speed(scene: Scene) -> tuple[Scene, bool]:
     if late(above) > 0.0:
         above = float(brentq(late, above, 2.0 * most, xtol=1e-300, rtol=1e-15))
     largest = float(np.abs(terms.torque).max()) + abs(mean)
-    return _from(scene, -mean - given, least + above), above <= _SLOW * largest
+    return _from(scene, -mean - over_time, least + above), above <= _SLOW * largest
 
 
 def _with_drag(scene: Scene, guess: Scene) -> tuple[Scene, bool]:

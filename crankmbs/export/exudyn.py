@@ -186,7 +186,7 @@ def _refused_load(scene: Scene) -> str:
             )
     for number, force in enumerate(scene.force, start=1):
         if not isinstance(force, ConstantForce | Spring | Damper | ForceAngleTable):
-            kind = "a function of Python" if force.law.given else f'kind = "{force.kind}"'
+            kind = "a function of Python" if force.law.python else f'kind = "{force.kind}"'
             return (
                 f"force[{number}], {kind}; give springs, dampers, constants or a table over the "
                 "angle, which are smooth"

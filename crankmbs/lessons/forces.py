@@ -162,7 +162,7 @@ def _greatest(result: Result) -> Question:
         answers.row("side thrust", name)
         for name in ("untruncated lecture", "S1 (motion and forces truncated)")
     )
-    where = math.degrees(answers.excerpt.size("side thrust", np.maximum(two.values, 0.0)).angle)
+    angle = math.degrees(answers.excerpt.size("side thrust", np.maximum(two.values, 0.0)).angle)
     solution = simulated("side_peak", thrust, "kN", 1e-3, 5)
     return Question(
         name="ask_thrust",
@@ -173,7 +173,7 @@ def _greatest(result: Result) -> Question:
         answer=f"{solution} at "
         f"{simulated('side_angle', at, '°')}, just after firing. The lecture says "
         f"{exact('side_two_masses', two.values.max(), 'kN', 1e-3, 5)} with two masses, at "
-        f"{simulated('side_two_angle', Estimate(where, _SPACING), '°')}, and "
+        f"{simulated('side_two_angle', Estimate(angle, _SPACING), '°')}, and "
         f"{exact('side_truncated', truncated.values.max(), 'kN', 1e-3, 5)} truncated.",
     )
 
@@ -187,7 +187,7 @@ def _missing(result: Result, split: Budget) -> Question:
     missing = Estimate(
         cause.size.largest, 2.0 * float(result.data["side_force"].attrs["error_estimate"])
     )
-    where = Estimate(math.degrees(cause.size.angle), _SPACING)
+    angle = Estimate(math.degrees(cause.size.angle), _SPACING)
     share = Estimate(row.share(cause), 100.0 * missing.error / row.peak)
     sine = (r + abs(e)) / l
     cosine = math.sqrt(1.0 - sine**2)
@@ -200,7 +200,7 @@ def _missing(result: Result, split: Budget) -> Question:
         solution=solution,
         hint="The strip below the side thrust shows it, with the slider where the rod has it.",
         tolerance=0.02,
-        answer=f"At {simulated('missing_angle', where, '°')} the rod swings hardest, "
+        answer=f"At {simulated('missing_angle', angle, '°')} the rod swings hardest, "
         rf"$|\varepsilon|=\lambda\omega^2/\cos\beta$, and the couple too much is "
         f"{exact('couple', couple, 'N m')}: {exact('missing_formula', couple / l / cosine, 'N')} "
         f"at the wall. The error budget finds {solution}, "

@@ -90,14 +90,14 @@ def read_with_errors(
     return values, errors
 
 
-def _inside(result: Result, name: str, unit: str, given: ArrayLike | None) -> Array:
+def _inside(result: Result, name: str, unit: str, at: ArrayLike | None) -> Array:
     """What is asked for, shape (n,), none of it outside the samples."""
     try:
-        places = np.atleast_1d(np.asarray(given, dtype=np.float64))
+        places = np.atleast_1d(np.asarray(at, dtype=np.float64))
     except (TypeError, ValueError):
-        raise InputError(f"{name} must be numbers [{unit}]; {shown(given)} came") from None
+        raise InputError(f"{name} must be numbers [{unit}]; {shown(at)} came") from None
     if places.ndim != 1 or places.size == 0 or not np.all(np.isfinite(places)):
-        raise InputError(f"{name} must be finite numbers [{unit}] in a row; {shown(given)} came")
+        raise InputError(f"{name} must be finite numbers [{unit}] in a row; {shown(at)} came")
     values = result.data[name].values
     low, high = float(values.min()), float(values.max())
     first = result.passes.answer.cells[0]  # of a long run with few samples the end is kept

@@ -43,8 +43,8 @@ def warnings(scene: Scene) -> tuple[str, ...]:
     for number, gear in enumerate(scene.running_gear, start=1):
         area = gear.piston.gas_area
         sized = _Sized(gear, 3.0 * gear.stroke if area is None else math.sqrt(4.0 * area / math.pi))
-        where = "" if gear == common else f"cylinder[{number}]: "
-        sentences += [f"{where}{sentence}" for rule in _OF_GEAR for sentence in rule(sized)]
+        prefix = "" if gear == common else f"cylinder[{number}]: "
+        sentences += [f"{prefix}{sentence}" for rule in _OF_GEAR for sentence in rule(sized)]
     sentences += [sentence for rule in _OF_SCENE for sentence in rule(scene)]
     return tuple(dict.fromkeys(sentences))
 

@@ -108,9 +108,9 @@ def gears_of(scene: Scene) -> Gears:
     rows = []
     for gear in scene.running_gear:
         rod, piston = gear.rod, gear.piston
-        own = *gear.shape, rod.mass, rod.center_of_mass, rod.moment_of_inertia, piston.mass
+        masses = *gear.shape, rod.mass, rod.center_of_mass, rod.moment_of_inertia, piston.mass
         areas = piston.gas_area or 0.0, piston.crank_end_share
-        rows.append((*own, *areas, top_position(*gear.shape), *dead_centres(*gear.shape)))
+        rows.append((*masses, *areas, top_position(*gear.shape), *dead_centres(*gear.shape)))
     return Gears(*(np.array(rows).T[:, :, np.newaxis] if scene.unlike else rows[0]))
 
 

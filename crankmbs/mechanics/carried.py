@@ -60,21 +60,21 @@ def carried_over(scene: Scene, before: Scene) -> Scene:
     """
     gas = scene.gas
     pairs = zip(before.running_gear, cycle(scene.running_gear), strict=False)
-    ways = [(Shape(*one.shape), Shape(*other.shape)) for one, other in pairs]
-    if gas is None or all(one == other for one, other in ways):
+    shapes_of = [(Shape(*one.shape), Shape(*other.shape)) for one, other in pairs]
+    if gas is None or all(one == other for one, other in shapes_of):
         return scene
     if gas.indicator is not None and not tables_of(gas.crank_end):
         return scene
-    shapes = {shape for way in ways for shape in way}
+    shapes = {shape for way in shapes_of for shape in way}
     if any(radius == length and offset == 0.0 for radius, length, offset in shapes):
         raise InputError(
             "rod.length: a rod as long as the crank lets the piston rest for half a turn, where a "
             "table of pressures cannot follow it; give a longer rod"
         )
     moved: dict[str, Any] = {
-        name: _moved(before, gas, given, ways)
+        name: _moved(before, gas, source, shapes_of)
         for name in ("pressure", "motored", "crank_end")
-        if isinstance(given := getattr(gas, name), Table | CylinderTable | tuple)
+        if isinstance(source := getattr(gas, name), Table | CylinderTable | tuple)
     }
     if any(isinstance(getattr(gas, name), CylinderTable) for name in moved):
         moved["aligned"] = False
@@ -113,18 +113,18 @@ def _swept(phi: Array, shape: Shape) -> tuple[Array, Array]:
 
 
 def _moved(
-    before: Scene, gas: Gas, given: Tables, ways: list[tuple[Shape, Shape]]
+    before: Scene, gas: Gas, source: Tables, shapes: list[tuple[Shape, Shape]]
 ) -> Table | tuple[Table, ...]:
     """Every table with its rows moved, one for all cylinders of one shape or one for each."""
-    shifts = behind(before, gas, given)
-    if isinstance(given, Table) and len(set(ways)) == 1:
-        return _table(given, shifts[0], shifts[0], ways[0])
-    tables = (given,) * len(ways) if isinstance(given, Table) else tables_of(given)
+    shifts = behind(before, gas, source)
+    if isinstance(source, Table) and len(set(shapes)) == 1:
+        return _table(source, shifts[0], shifts[0], shapes[0])
+    tables = (source,) * len(shapes) if isinstance(source, Table) else tables_of(source)
     aligned = behind(before, gas, tables)  # what a list of tables lags
-    every = zip(tables, shifts, aligned, ways, strict=True)
+    every = zip(tables, shifts, aligned, shapes, strict=True)
     return tuple(_table(*one) for one in every)
 
 
-def _table(table: Table, shift: float, back: float, ways: tuple[Shape, Shape]) -> Table:
-    angle = carried_angle(np.add(table.x, shift), *ways) - back
+def _table(table: Table, shift: float, back: float, shapes: tuple[Shape, Shape]) -> Table:
+    angle = carried_angle(np.add(table.x, shift), *shapes) - back
     return Table(tuple(angle.tolist()), table.y, table.source)

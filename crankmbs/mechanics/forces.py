@@ -32,7 +32,7 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.cycle import tiled
 from crankmbs.numerics.function import Function, named
 from crankmbs.numerics.piecewise import Piecewise
-from crankmbs.scene.force import Given, PistonForce
+from crankmbs.scene.force import PistonForce, PythonLaw
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import Table
 from crankmbs.scene.torque import Parts
@@ -123,7 +123,7 @@ class OnCrank:
         """What the crank feels, but for what `resisting` does."""
         law = self.force.law
         by_angle = law.forward is not None or law.over_angle is not None
-        more = law.over_time is not None or law.given is not None
+        more = law.over_time is not None or law.python is not None
         return Parts(
             over_angle=_OverAngle(self) if by_angle else None,
             function=_OfTime(self) if more else None,
@@ -144,7 +144,7 @@ class OnCrank:
         """
         law, loop = self.force.law, closed_loops(self.scene, theta)
         total = self.by_angle(theta, loop)
-        if law.over_time is not None or law.given is not None:
+        if law.over_time is not None or law.python is not None:
             total += self.by_time(t, theta, omega, loop)
         if law.switches:
             total -= np.abs(share) * self._sign(theta, share) * self.jumping(theta, loop)
@@ -167,12 +167,12 @@ class OnCrank:
         law, total = self.force.law, np.zeros_like(loop.x)
         if law.over_time is not None:
             total += law.over_time(t)
-        if law.given is not None:
+        if law.python is not None:
             velocity = -loop.x_1 * omega
             at = t, self._cycle_angles(theta), displacements(self.scene, loop), velocity
             which = np.flatnonzero(self.pistons)
             each = (np.broadcast_to(one, loop.x.shape)[which] for one in at)
-            total[which] += _each(law.given.function, *each)
+            total[which] += _each(law.python.function, *each)
         return self.pistons * total
 
     def jumping(self, theta: Array, loop: Loop) -> Array:
@@ -205,7 +205,7 @@ class OnCrank:
         bends or jumps."""
         law = self.force.law
         rows = {k for way in (law.forward, law.back) if way is not None for k in way.knots}
-        rows |= set(law.given.displacements if law.given else ())
+        rows |= set(law.python.displacements if law.python else ())
         knots = []
         for gear in self.scene.running_gear:
             inside = np.array(sorted(row for row in rows if 0.0 < row < gear.stroke))
@@ -215,8 +215,8 @@ class OnCrank:
     def at_crank(self, cycle_angles: list[Array], period: float) -> Array:
         """The crank angles [rad] in [0, period) at which a piston that it acts on is at one of its
         cycle angles."""
-        own = zip(cycle_angles, axes_of(self.scene).phases, self.pistons[:, 0], strict=True)
-        angles = [angle - phase for angle, phase, acts in own if acts]
+        pistons = zip(cycle_angles, axes_of(self.scene).phases, self.pistons[:, 0], strict=True)
+        angles = [angle - phase for angle, phase, acts in pistons if acts]
         return apart(np.mod(np.concatenate(angles), period))
 
 
@@ -233,9 +233,9 @@ class _OverAngle:
         self._load, law = load, load.force.law
         self.period = _TURN if law.over_angle is None else law.over_angle.period
         turns = _TURN * np.arange(round(self.period / _TURN) or 1)
-        given = np.empty(0) if law.over_angle is None else tiled(law.over_angle, self.period)
-        over_travel = (np.add.outer(turns, own).ravel() for own in load.travel_knots)
-        cycle_angles = [np.concatenate([own, given]) for own in over_travel]
+        rows = np.empty(0) if law.over_angle is None else tiled(law.over_angle, self.period)
+        over_travel = (np.add.outer(turns, travel).ravel() for travel in load.travel_knots)
+        cycle_angles = [np.concatenate([travel, rows]) for travel in over_travel]
         inside = load.at_crank(cycle_angles, self.period)
         inside = inside[(inside > KNOT) & (inside < self.period - KNOT)]
         self.knots = np.concatenate([[0.0], inside, [self.period]])
@@ -257,24 +257,24 @@ class _OfTime(Function):
 
     def __init__(self, load: OnCrank) -> None:
         self._load, law = load, load.force.law
-        given = law.given or Given(_nothing)
-        own = given.period or _TURN
-        turns, knots = _TURN * np.arange(round(own / math.pi)), []
+        python = law.python or PythonLaw(_nothing)
+        period = python.period or _TURN
+        turns, knots = _TURN * np.arange(round(period / math.pi)), []
         for travel, gear in zip(load.travel_knots, load.scene.running_gear, strict=True):
-            centres = dead_centres(*gear.shape) if law.given is not None else ()
+            centres = dead_centres(*gear.shape) if law.python is not None else ()
             # at a dead centre it may jump with the sense of the velocity
             every = np.add.outer(turns, np.concatenate([travel, centres])).ravel()
-            knots.append(np.concatenate([every, given.angles]))
-        angles = load.at_crank(knots, own).tolist()
-        times = (*given.times, *(law.over_time.knots if law.over_time else ()))
-        speeds = () if law.given is None else (0.0,)
+            knots.append(np.concatenate([every, python.angles]))
+        angles = load.at_crank(knots, period).tolist()
+        times = (*python.times, *(law.over_time.knots if law.over_time else ()))
+        speeds = () if law.python is None else (0.0,)
 
         def one(t: float, theta: float, omega: float) -> float:
             return float(self._values([np.array([number]) for number in (t, theta, omega)])[0])
 
-        one.__name__ = named(given.function)
-        super().__init__(one, times, tuple(angles), speeds, given.period)
-        self.declared = law.given is None
+        one.__name__ = named(python.function)
+        super().__init__(one, times, tuple(angles), speeds, python.period)
+        self.declared = law.python is None
 
     def _values(self, at: list[Array]) -> Array:
         t, theta, omega = at

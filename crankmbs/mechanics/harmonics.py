@@ -71,8 +71,8 @@ def closed_orders(scene: Scene, highest: int = 12) -> ClosedOrders | None:
         total[0] += turn * (cos_bank * along - sin_bank * across)
         total[1] += turn * (sin_bank * along + cos_bank * across)
         total[2] += turn * torque
-    own = crank.mass * crank.center_of_mass
-    total[:2, 0] += own, -1j * own
+    of_crank = crank.mass * crank.center_of_mass
+    total[:2, 0] += of_crank, -1j * of_crank
     return ClosedOrders(order, *total)
 
 

@@ -21,7 +21,7 @@ from crankmbs.mechanics.indicator import INDICATOR_RTOL, fit, indicator_pieces, 
 from crankmbs.mechanics.knots import KNOT, apart, repeat
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.scene.cycles import cycles_in
-from crankmbs.scene.gas import Gas, Polytrope, PressureGiven, tables_of
+from crankmbs.scene.gas import AnyPressure, Gas, Polytrope, tables_of
 from crankmbs.scene.pressure_rows import closing_row, interpolate, overshoot
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import Table
@@ -185,7 +185,7 @@ def pressures_of(scene: Scene) -> tuple[PeriodicPressure, ...] | None:
     if gas.indicator is not None:
         return _of_indicator(scene, gas, fires=True)
     assert gas.pressure is not None
-    return _given(scene, gas, gas.pressure)
+    return _of_source(scene, gas, gas.pressure)
 
 
 def motored_of(scene: Scene) -> tuple[PeriodicPressure, ...]:
@@ -201,7 +201,7 @@ def motored_of(scene: Scene) -> tuple[PeriodicPressure, ...]:
         return _of_indicator(scene, gas, fires=False)
     assert gas.motored is not None
     if not isinstance(gas.motored, Polytrope):
-        return _given(scene, gas, gas.motored)
+        return _of_source(scene, gas, gas.motored)
     of_each = [(one, gear.shape) for one, gear in zip(fired, scene.running_gear, strict=True)]
     once = {each: _continued(gas, gas.motored, *each) for each in dict.fromkeys(of_each)}
     return tuple(once[each] for each in of_each)
@@ -216,7 +216,7 @@ def crank_ends_of(scene: Scene) -> tuple[PeriodicPressure, ...] | None:
     gas = scene.gas
     if gas is None or gas.crank_end is None:
         return None
-    return _given(scene, gas, gas.crank_end)
+    return _of_source(scene, gas, gas.crank_end)
 
 
 def _of_indicator(scene: Scene, gas: Gas, *, fires: bool) -> tuple[PeriodicPressure, ...]:
@@ -229,7 +229,7 @@ def _of_indicator(scene: Scene, gas: Gas, *, fires: bool) -> tuple[PeriodicPress
     return tuple(once[gear.shape] for gear in scene.running_gear)
 
 
-def _given(scene: Scene, gas: Gas, source: PressureGiven) -> tuple[PeriodicPressure, ...]:
+def _of_source(scene: Scene, gas: Gas, source: AnyPressure) -> tuple[PeriodicPressure, ...]:
     """The pressure of each cylinder from what a file, several or a constant say."""
     cylinders = scene.cylinders
     if isinstance(source, float):

@@ -79,14 +79,14 @@ def reactions(
     theta: ArrayLike,
     omega: ArrayLike,
     alpha: ArrayLike,
-    given: Mapping[str, Array] = _NOTHING,
+    known: Mapping[str, Array] = _NOTHING,
 ) -> dict[str, Array]:
     """Motion of every part and force in every joint.
 
     Parameters
     ----------
     theta, omega, alpha : shape (n,) [rad, rad/s, rad/s2]; any motion, prescribed or free
-    given : what does not follow from these, by its name in a result, shape (n, cylinders) each:
+    known : what does not follow from these, by its name in a result, shape (n, cylinders) each:
         "fuel", shares of the combustion; "applied_force" [N], from outside on the pistons;
         "friction_force" [N], by default what the speeds make of it,
         `crankmbs.mechanics.friction.friction_forces`
@@ -100,7 +100,7 @@ def reactions(
     >>> float(reactions(train, [0.0], [10.0], [0.0])["rod_angle"][0, 0])
     0.0
     """
-    balanced = balances(train, theta, omega, alpha, given)
+    balanced = balances(train, theta, omega, alpha, known)
     # one piece of memory, so large that the system is not asked for every run's anew
     table = Table(
         balanced.rows, np.empty((sum(balanced.rows.values()), len(balanced.period.which)))
@@ -140,11 +140,11 @@ class Balances(NamedTuple):
         kept."""
         largest, count = np.empty(len(values)), values.shape[1]
         for names, rows in self.groups:
-            own = np.empty((rows.stop - rows.start, len(self.period.which)))
-            self.put(names, own)
-            own[:, :count] -= values[rows]
-            own[:, count:] -= values[rows, -1:]
-            largest[rows] = peaks_of(own)
+            rows_here = np.empty((rows.stop - rows.start, len(self.period.which)))
+            self.put(names, rows_here)
+            rows_here[:, :count] -= values[rows]
+            rows_here[:, count:] -= values[rows, -1:]
+            largest[rows] = peaks_of(rows_here)
         return largest
 
     def row(self, name: str) -> Array:
@@ -211,7 +211,7 @@ def balances(
     theta: ArrayLike,
     omega: ArrayLike,
     alpha: ArrayLike,
-    given: Mapping[str, Array] = _NOTHING,
+    known: Mapping[str, Array] = _NOTHING,
 ) -> Balances:
     """What `reactions` puts together, before it does.
 
@@ -228,7 +228,7 @@ def balances(
         period = single(theta)
     motion = UNITS if by_parts else Powers(square[None], alpha[None], np.ones((1, 1)))
     rows, parts = rows_of(scene), balanced(train, period.angles, motion)
-    fuel, pushes = given.get("fuel"), {n: given[n] for n in _PUSHES if n in given}
+    fuel, pushes = known.get("fuel"), {n: known[n] for n in _PUSHES if n in known}
     if scene.friction is not None and _RUBBED not in pushes:
         pushes[_RUBBED] = friction_forces(train, theta, omega, fuel)
     rows |= dict.fromkeys(pushes, len(scene.cylinders))

@@ -217,10 +217,10 @@ def merged_knots(train: CrankTrain, knots: Sequence[Array]) -> Array:
     return merged
 
 
-def _repeated(knots: Array, own: float, period: float) -> Array:
+def _repeated(knots: Array, after: float, period: float) -> Array:
     """Knots of one period of their own, in as many as make the whole one."""
-    turns = np.arange(round(period / own))
-    return np.asarray((own * turns[:, None] + knots).ravel())
+    turns = np.arange(round(period / after))
+    return np.asarray((after * turns[:, None] + knots).ravel())
 
 
 def friction_knots(train: CrankTrain) -> Array:
@@ -239,10 +239,10 @@ def friction_knots(train: CrankTrain) -> Array:
     if scene.friction is None and not train.sticks:
         return np.empty(0)
     turns = 2.0 * math.pi * np.arange(round(train.period / (2.0 * math.pi)))
-    own = zip(scene.cylinders, scene.running_gear, strict=True)
+    cylinders = zip(scene.cylinders, scene.running_gear, strict=True)
     angles = [
         np.add.outer(turns, np.array(dead_centres(*gear.shape)) - c.phase).ravel()
-        for c, gear in own
+        for c, gear in cylinders
     ]
     if train.combustion is None:
         angles.append(sign_changes(train))

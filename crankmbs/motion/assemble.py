@@ -132,13 +132,13 @@ class _Passes(NamedTuple):
             balanced = slice(first, first + sum(balances.rows.values()))
             apart[balanced] = balances.apart(before[balanced])
             missed = 0.0
-            if samples.own:
+            if samples.computed:
                 row = places["external_torque"].start
-                given = samples.own.get("external_torque", before[row])
-                missed = peak(balances.row("external_torque")[: len(given)] - given)
+                acting = samples.computed.get("external_torque", before[row])
+                missed = peak(balances.row("external_torque")[: len(acting)] - acting)
             count = before.shape[1]
             apart[:first] = peaks_of(before[:first] - motion_rows(samples)[:, :count])
-            for name, values in samples.own.items():
+            for name, values in samples.computed.items():
                 apart[places[name]] = peaks_of(before[places[name]] - values.T[..., :count])
             total += self.table.largest(apart)
             if samples is not self.rounded:

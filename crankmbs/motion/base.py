@@ -33,8 +33,8 @@ class Samples:
 
     time, theta, omega, alpha : shape (n,) [s, rad, rad/s, rad/s2]; time strictly increases
     energy_residual : shape (n,) [J], kinetic energy gained minus work done
-    own : variables of the result, by name, that the formulation computed by itself, shape (n,) or
-        (n, cylinders); everything else follows from theta, omega, alpha
+    computed : variables of the result, by name, that the formulation computed by itself, shape (n,)
+        or (n, cylinders); everything else follows from theta, omega, alpha
     """
 
     time: Array
@@ -42,7 +42,7 @@ class Samples:
     omega: Array
     alpha: Array
     energy_residual: Array
-    own: Mapping[str, Array] = field(default_factory=dict)
+    computed: Mapping[str, Array] = field(default_factory=dict)
 
     def select(self, which: slice | NDArray[np.bool_] | NDArray[np.intp]) -> Samples:
         """Some of the samples."""
@@ -61,7 +61,9 @@ class Samples:
             omega=function([b.omega for b in blocks]),
             alpha=function([b.alpha for b in blocks]),
             energy_residual=function([b.energy_residual for b in blocks]),
-            own={name: function([b.own[name] for b in blocks]) for name in blocks[0].own},
+            computed={
+                name: function([b.computed[name] for b in blocks]) for name in blocks[0].computed
+            },
         )
 
 

@@ -180,17 +180,17 @@ class Cycles:
         """Work [J] at points that stand for angles turned [rad], shape (n,); shape (n, columns)."""
         train, scene, theta, omega = self._train, self._train.scene, points.theta, points.omega
         works = np.zeros((len(omega), len(self._works)))
-        of, fuel = self._columns, points.own.get("fuel")
+        of, fuel = self._columns, points.computed.get("fuel")
         towards = -closed_loops(scene, theta).x_1 * turned
         for number, load in loads:
             works[:, number - 1] = load(points.time, theta, omega) * turned
         if scene.motion is not None:
-            drive = points.own.get("external_torque")
+            drive = points.computed.get("external_torque")
             if drive is None:
                 drive = balances_of(train, points).row("external_torque")
             works[:, of["drive_work"]] = (drive * turned)[:, None]
         if scene.friction is not None:
-            works[:, of["friction_work"]] = points.own["friction_force"] * towards.T
+            works[:, of["friction_work"]] = points.computed["friction_force"] * towards.T
         gas = gas_at(train, theta, None if fuel is None else fuel.T)
         if gas is not None:
             works[:, of["gas_work"]] = (gears_of(scene).area * gas * towards).T

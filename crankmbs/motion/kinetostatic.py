@@ -50,9 +50,9 @@ def run(train: CrankTrain) -> Solution:
     time, theta = plan.samples(stretches, lambda t: law.at_time(t)[0], law.time_at, final)
     _, omega, alpha = law.at_time(time)
     residual = _energy_residual(driven(_way(train, law), stretches), train, time)
-    own = {} if firings is None else {"fuel": firings.at(time)}
-    own |= _applied(train, time, theta, omega)
-    samples = Samples(time, theta, omega, alpha, residual, own)
+    computed = {} if firings is None else {"fuel": firings.at(time)}
+    computed |= _applied(train, time, theta, omega)
+    samples = Samples(time, theta, omega, alpha, residual, computed)
     ending = Ending.COMPLETE if reached else Ending.LAW_RESTS
     if plan.folds_at(float(theta[-1])):
         ending = Ending.FOLD
@@ -97,8 +97,8 @@ def _by(train: CrankTrain, law: SpeedLaw, samples: Samples, by_angle: NDArray[np
     time = np.where(by_angle, passed, samples.time)
     theta, omega, alpha = law.at_time(time)
     theta = np.where(by_angle, samples.theta, theta)
-    own = {**samples.own, **_applied(train, time, theta, omega)}
-    return replace(samples, time=time, theta=theta, omega=omega, alpha=alpha, own=own)
+    computed = {**samples.computed, **_applied(train, time, theta, omega)}
+    return replace(samples, time=time, theta=theta, omega=omega, alpha=alpha, computed=computed)
 
 
 def _applied(train: CrankTrain, time: Array, theta: Array, omega: Array) -> dict[str, Array]:

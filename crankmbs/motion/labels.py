@@ -99,8 +99,8 @@ def events_table(scene: Scene, rows: Rows) -> Table:
         name: about.labelled(rows.columns[name], rows.errors[name], ("event",))
         for name, about in list(EVENTS.items())[:4]
     }
-    given = (rows.columns[name].tolist() for name in ("time", "share"))
-    said = zip(kinds, numbers.tolist(), *given, strict=True)
+    times_and_shares = (rows.columns[name].tolist() for name in ("time", "share"))
+    said = zip(kinds, numbers.tolist(), *times_and_shares, strict=True)
     more: dict[str, NDArray[Any]] = {
         "kind": np.array([_WORDS[kind] for kind in kinds], dtype=str),
         "cylinder": np.where(codes == Kind.FUEL, numbers, 0),

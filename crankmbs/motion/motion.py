@@ -52,7 +52,7 @@ class Motion:
         """That of a run that ends where it begins: the first of its samples."""
         rows = (samples.time, samples.theta, samples.omega, samples.alpha)
         time, angle, speed, rate = (np.full((1, 3), row[0]) for row in rows)
-        shares = samples.own.get("fuel", np.empty((1, 0)))[:1]
+        shares = samples.computed.get("fuel", np.empty((1, 0)))[:1]
         return cls(train, [Cells(time, angle, speed, Acting(0.0), shares, acceleration=rate)])
 
     @cached_property

@@ -30,7 +30,7 @@ def remarks(scene: Scene, mode: Mode, samples: Samples) -> tuple[str, ...]:
     >>> simulate(load_scene("propeller")).message
     'reached the end of the run'
     """
-    shares = samples.own.get("fuel")
+    shares = samples.computed.get("fuel")
     said = [*_windows(scene, mode, float(samples.time[-1])), *_turned_back(scene, samples.omega)]
     fuel, firing = scene.fuel, mode.firing
     if fuel is not None and firing is not None:

@@ -72,13 +72,13 @@ def _samples(
     are known there."""
     faster = cells.speed if cells.energy is None else cells.energy
     rows = {"time": cells.time, "angle": cells.angle, "speed": faster}
-    asked = [name for name in rows if name not in known]
-    known |= zip(asked, read(np.array([rows[name] for name in asked])), strict=True)
+    wanted = [name for name in rows if name not in known]
+    known |= zip(wanted, read(np.array([rows[name] for name in wanted])), strict=True)
     time, angle, speed = (known[name] for name in rows)
     sense = cells.acting.sense
-    own = {"fuel": cells.shares[k]} if cells.shares.shape[1] else {}
+    computed = {"fuel": cells.shares[k]} if cells.shares.shape[1] else {}
     phases = cells.acting.phases
-    inertia, slope, torque = _reduced(train, angle, own.get("fuel"))
+    inertia, slope, torque = _reduced(train, angle, computed.get("fuel"))
     if cells.energy is not None:
         speed = sense * np.sqrt(2.0 * np.maximum(speed, 0.0) / inertia)
     slides, rate = np.full_like(speed, sense), None
@@ -88,21 +88,24 @@ def _samples(
         if cells.acting.holds and train.rubs:
             slides = _holding(cells, train, torque + outside)
         if train.rubs:
-            fuel = own.get("fuel")
+            fuel = computed.get("fuel")
             torque = torque + friction_torque(train, angle, speed, slides, fuel, phases)
         rest = torque - 0.5 * slope * speed**2
         outside = -rest if cells.acting.holds else outside
         rate = (rest + outside) / inertia
-        own["external_torque"] = outside - sum(push.parts(time, angle, speed) for push in pushes)
+        on_pistons = sum(push.parts(time, angle, speed) for push in pushes)
+        computed["external_torque"] = outside - on_pistons
     if cells.acceleration is not None:
         rate = read(cells.acceleration)
     assert rate is not None
     if train.scene.friction is not None:
-        own["friction_force"] = friction_forces(train, angle, speed, own.get("fuel"), slides)
+        computed["friction_force"] = friction_forces(
+            train, angle, speed, computed.get("fuel"), slides
+        )
     if train.pushes:
-        own["applied_force"] = applied_forces(train, pushes, (time, angle, speed), slides)
+        computed["applied_force"] = applied_forces(train, pushes, (time, angle, speed), slides)
     residual = np.zeros_like(time) if cells.residual is None else cells.residual[k]
-    return Samples(time, angle, speed, rate, residual, own)
+    return Samples(time, angle, speed, rate, residual, computed)
 
 
 def applied_forces(
@@ -160,15 +163,15 @@ def _holding(cells: Cells, train: CrankTrain, torque: Array) -> Array:
 def table_of(train: CrankTrain, samples: Samples) -> Table:
     """Every variable at the samples: the motion, what follows from it, and in place of that, or
     beside it, what the samples have of their own."""
-    balanced, own = balances_of(train, samples), samples.own
-    more = {name: one.shape[1] for name, one in own.items() if name not in balanced.rows}
+    balanced, computed = balances_of(train, samples), samples.computed
+    more = {name: one.shape[1] for name, one in computed.items() if name not in balanced.rows}
     rows = dict.fromkeys(MOTION, 1) | balanced.rows | more
     # one piece of memory, so large that the system is not asked for every run's anew
     table = Table(rows, np.empty((sum(rows.values()), len(samples.time))))
     table.values[: len(MOTION)] = motion_rows(samples)
     balanced.fill(table.values[len(MOTION) :][: sum(balanced.rows.values())])
     places = table.places
-    for name, values in own.items():
+    for name, values in computed.items():
         table.values[places[name]] = values.T
     return table
 
@@ -182,8 +185,8 @@ def variables_at(train: CrankTrain, samples: Samples) -> dict[str, Array]:
 
 def balances_of(train: CrankTrain, samples: Samples) -> Balances:
     """What follows from the motion at samples, not yet put together."""
-    given = {name: samples.own[name] for name in _GIVEN if name in samples.own}
-    return balances(train, samples.theta, samples.omega, samples.alpha, given)
+    known = {name: samples.computed[name] for name in _GIVEN if name in samples.computed}
+    return balances(train, samples.theta, samples.omega, samples.alpha, known)
 
 
 def motion_rows(samples: Samples) -> Array:

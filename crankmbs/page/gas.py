@@ -8,7 +8,7 @@ from crankmbs.mechanics.cycle_rows import rows_of
 from crankmbs.mechanics.pressure import PeriodicPressure
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.gas import Gas, Indicator, Polytrope, PressureGiven
+from crankmbs.scene.gas import AnyPressure, Gas, Indicator, Polytrope
 from crankmbs.scene.scene import Scene
 
 __all__ = ["exported_gas"]
@@ -76,7 +76,7 @@ class _Sources:
         self.exported: list[dict[str, Any]] = []
 
     def numbers(
-        self, given: PressureGiven | Indicator | Polytrope | None, *, fires: bool
+        self, given: AnyPressure | Indicator | Polytrope | None, *, fires: bool
     ) -> list[int]:
         """The numbers of the sources of the cylinders."""
         count, gas = len(self._scene.cylinders), self._gas

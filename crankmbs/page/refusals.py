@@ -73,7 +73,7 @@ def _reasons(scene: Scene) -> Iterator[str]:
 
 def _of_forces(scene: Scene) -> Iterator[str]:
     for force in scene.force:
-        if force.law.given is not None:
+        if force.law.python is not None:
             yield "function: a force on a piston is a function of Python"
         elif not force.is_steady:
             yield "force: a force on the pistons changes with time or has a window"

@@ -117,8 +117,8 @@ def comparison_table(comparison: Comparison) -> Table:
             _share(percent(compared[name].size.largest, peak)) if name in compared else ""
             for name in references
         )
-        where = f"{math.degrees(last.size.angle):.0f}"
-        rows.append([_with_unit(quantity), digits(peak, most=4), *shares, where])
+        angle = f"{math.degrees(last.size.angle):.0f}"
+        rows.append([_with_unit(quantity), digits(peak, most=4), *shares, angle])
     names = map(short_name, references)
     headings = ["quantity", "peak", *(f"{name} [%]" for name in names), "at [deg]"]
     return Table(headings, rows)

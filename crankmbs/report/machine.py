@@ -16,7 +16,7 @@ from crankmbs.report.rows import cycle_remark
 from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 from crankmbs.scene.force import PistonForce
-from crankmbs.scene.gas import Gas, PressureGiven, tables_of
+from crankmbs.scene.gas import AnyPressure, Gas, tables_of
 from crankmbs.scene.parts import RunningGear
 from crankmbs.scene.run import SETTLED, Extent
 from crankmbs.scene.scene import Scene
@@ -161,18 +161,18 @@ def _gas(scene: Scene) -> str:
     return f"{gas.stroke}-stroke, {'double-acting, ' * scene.double_acting}{origin}"
 
 
-def _origin(gas: Gas, given: PressureGiven) -> str:
+def _origin(gas: Gas, source: AnyPressure) -> str:
     """What a pressure is made of."""
-    if isinstance(given, float):
-        return f"constant pressure of {given / BAR:.6g} bar"
-    return f"{_tables(gas, given)}, {gas.interpolation}"
+    if isinstance(source, float):
+        return f"constant pressure of {source / BAR:.6g} bar"
+    return f"{_tables(gas, source)}, {gas.interpolation}"
 
 
-def _tables(gas: Gas, given: PressureGiven) -> str:
-    tables = tables_of(given)
-    if isinstance(given, CylinderTable):
+def _tables(gas: Gas, source: AnyPressure) -> str:
+    tables = tables_of(source)
+    if isinstance(source, CylinderTable):
         over = "its own cycle angle" if gas.aligned else "that of cylinder 1"
-        text = f"{len(given.x)} rows of {given.source}, {len(given.y)} columns, each over {over}"
+        text = f"{len(source.x)} rows of {source.source}, {len(source.y)} columns, each over {over}"
     else:
         text = " and ".join(f"{len(table.x)} rows of {table.source}" for table in tables)
     cycles = max(cycles_in(table, gas.period) for table in tables)
@@ -181,25 +181,25 @@ def _tables(gas: Gas, given: PressureGiven) -> str:
     return f"{text}, {'the mean' if gas.cycles == 'mean' else 'a sequence'} of {cycles} cycles"
 
 
-def _pressures(scene: Scene, pressures: tuple[PeriodicPressure, ...], where: str) -> list[str]:
+def _pressures(scene: Scene, pressures: tuple[PeriodicPressure, ...], ending: str) -> list[str]:
     """Each pressure once, of several with the cylinders that have it."""
     of: dict[PeriodicPressure, list[int]] = {}
     for number, pressure in enumerate(pressures, start=1):
         of.setdefault(pressure, []).append(number)
     return [
         ("" if len(of) == 1 else f"cylinder {', '.join(map(str, numbers))}: ")
-        + _pressure(scene, pressure, where)
+        + _pressure(scene, pressure, ending)
         for pressure, numbers in of.items()
     ]
 
 
-def _pressure(scene: Scene, pressure: PeriodicPressure, where: str) -> str:
+def _pressure(scene: Scene, pressure: PeriodicPressure, ending: str) -> str:
     assert scene.gas is not None
     ambient = scene.gas.ambient
-    given = "gauge" if ambient is None else f"absolute, ambient {ambient / BAR:.6g} bar subtracted"
+    kind = "gauge" if ambient is None else f"absolute, ambient {ambient / BAR:.6g} bar subtracted"
     angle, peak = pressure.peak
     return (
-        f"{given}; at most {peak / BAR:.6g} bar {where}, at a cycle angle of "
+        f"{kind}; at most {peak / BAR:.6g} bar {ending}, at a cycle angle of "
         f"{math.degrees(angle):.6g} deg"
     )
 

@@ -66,7 +66,7 @@ class _About:
 
 
 def write_saved(
-    given: Mapping[str, Any],
+    by_name: Mapping[str, Any],
     variables: Labelled,
     account: Account | None,
     passes: Passes | None,
@@ -74,7 +74,7 @@ def write_saved(
 ) -> None:
     """Write result.nc: the variables, the account of the way and the passes of the motion where
     there are, and the fields of a result by name."""
-    about: dict[str, Any] = {field.name: given.get(field.name) for field in fields(_About)}
+    about: dict[str, Any] = {field.name: by_name.get(field.name) for field in fields(_About)}
     if passes is not None:
         about["share"] = passes.share
         variables = with_passes(variables, passes)
@@ -129,8 +129,8 @@ def read_saved(path: str | Path) -> dict[str, Any]:
             f"{file}: no readable result of crankmbs; give the result.nc that save wrote"
         ) from None
     derived = {"left_out", "share"}
-    given = {name: value for name, value in vars(about).items() if name not in derived}
-    return {**given, "data": data, "keep": keep, "motion": motion}
+    by_name = {name: value for name, value in vars(about).items() if name not in derived}
+    return {**by_name, "data": data, "keep": keep, "motion": motion}
 
 
 def _check_labels(data: xr.Dataset, scene: Scene) -> None:

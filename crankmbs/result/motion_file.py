@@ -63,7 +63,7 @@ def _rows(motion: Motion) -> dict[str, Array]:
         if functions and cells.acting.loads is not None:
             places = np.tile(cells.places, m)
             states = samples_in(cells, motion.train, np.repeat(np.arange(m), n), places)
-            outside = states.own["external_torque"]
+            outside = states.computed["external_torque"]
         unknown = np.full(m * n, np.nan)
         for name in _OF_NODES[:-1]:
             row: Array | None = getattr(cells, name)
@@ -109,17 +109,17 @@ def _stretches(train: CrankTrain, rows: dict[str, Array]) -> Iterator[Cells]:
         n = int(counts[low])
         points = slice(int(firsts[low]), int(firsts[low]) + n * (high - low))
         nodes = {name: rows[name][points].reshape(high - low, n) for name in _OF_NODES}
-        given = {name: None if np.isnan(row).any() else row for name, row in nodes.items()}
-        time, angle, speed = (given[name] for name in _OF_NODES[:3])
+        known = {name: None if np.isnan(row).any() else row for name, row in nodes.items()}
+        time, angle, speed = (known[name] for name in _OF_NODES[:3])
         if time is None or angle is None or speed is None:
             raise ValueError("a motion without numbers")
         phases = tuple(Phase(int(phase)) for phase in rows["phases"][low].tolist())
         loads = None
-        if given["acceleration"] is None:
+        if known["acceleration"] is None:
             loads = _loads(train, phases, float(time[0, n // 2]), float(speed[0, n // 2]))
         acting = Acting(float(rows["sense"][low]), bool(rows["holds"][low]), phases, loads)
         shares = rows["shares"][low:high]
-        energy, rate, outside = (given[name] for name in _OF_NODES[3:])
+        energy, rate, outside = (known[name] for name in _OF_NODES[3:])
         yield Cells(time, angle, speed, acting, shares, energy, rate, outside)
 
 

@@ -281,7 +281,7 @@ class Result:
         account = None if self.keep is None else self._account
         with together(target) as part:
             readable = self.motion is not None and all(
-                f.law.given is None for f in self.scene.force
+                f.law.python is None for f in self.scene.force
             )
             passes = self.passes if readable else None
             write_saved(vars(self), self.variables, account, passes, part / "result.nc")

@@ -26,21 +26,21 @@ def is_of_halves(period: float) -> bool:
     return round(halves) > 0 and abs(halves - round(halves)) <= NEAR * halves
 
 
-def check_turns(table: Table, given: float | None) -> None:
-    """Refuse rows that are no period: that given [rad], or else one or two revolutions.
+def check_turns(table: Table, declared: float | None) -> None:
+    """Refuse rows that are no period: the declared one [rad], or else one or two revolutions.
 
     Raises
     ------
     InputError : the file, the rule, what came, and the way out
     """
-    if given is not None and not is_of_halves(given):
+    if declared is not None and not is_of_halves(declared):
         raise InputError(
             "period: must be a multiple of 180 degrees, so that it fits the engine's; "
-            f"{given / DEGREE:g} degrees came"
+            f"{declared / DEGREE:g} degrees came"
         )
-    x, period = table.x, _period(table, given)
+    x, period = table.x, _period(table, declared)
     if x[-1] - x[0] > period + NEAR:
-        of = "two revolutions" if given is None else f"the period of {given / DEGREE:g} degrees"
+        of = f"the period of {period / DEGREE:g} degrees" if declared else "two revolutions"
         way_out = 'leave out the rest, or give a longer period, such as "3 rev"'
         raise InputError(
             f"{table.source}: the rows span {(x[-1] - x[0]) / DEGREE:g} degrees, more than {of}, "
@@ -60,13 +60,13 @@ def check_turns(table: Table, given: float | None) -> None:
         )
 
 
-def cycle_of(table: Table, interpolation: str, given: float | None) -> Cycle:
-    """The torque over the crank angle; given : its period [rad], if it is not by its rows.
+def cycle_of(table: Table, interpolation: str, declared: float | None) -> Cycle:
+    """The torque over the crank angle; declared : its period [rad], if it is not by its rows.
 
     >>> cycle_of(Table([0.0, 3.0, 6.0], [1.0, 4.0, 1.0]), "linear", None)(np.array([1.5]))
     array([2.5])
     """
-    x, y, period = list(table.x), list(table.y), _period(table, given)
+    x, y, period = list(table.x), list(table.y), _period(table, declared)
     before = [y[0]] if x[1] == x[0] else []  # a jump where the rows begin
     x, y = x[len(before) :], y[len(before) :]
     closing = [value for angle, value in zip(x, y, strict=True) if angle > x[0] + period - NEAR]
@@ -76,9 +76,9 @@ def cycle_of(table: Table, interpolation: str, given: float | None) -> Cycle:
     return Cycle(*interpolate(rows, interpolation))
 
 
-def _period(table: Table, given: float | None) -> float:
-    """That given, or one revolution where the rows span no more, else two [rad]."""
-    if given is not None:
-        return round(given / math.pi) * math.pi
+def _period(table: Table, declared: float | None) -> float:
+    """The declared one, or one revolution where the rows span no more, else two [rad]."""
+    if declared is not None:
+        return round(declared / math.pi) * math.pi
     turns = 1 if table.x[-1] - table.x[0] <= 2.0 * math.pi + NEAR else 2
     return 2.0 * math.pi * turns

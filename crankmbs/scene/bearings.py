@@ -125,16 +125,16 @@ def throws_of(scene: Scene) -> Throws | None:
 def _numbers(scene: Scene) -> tuple[int, ...]:
     """The throw of each cylinder, from 0; where none is given, one for each along the crank."""
     cylinders = scene.cylinders
-    given = [cylinder.throw for cylinder in cylinders]
-    if None in given:
-        if any(number is not None for number in given):
+    throws = [cylinder.throw for cylinder in cylinders]
+    if None in throws:
+        if any(number is not None for number in throws):
             raise InputError("layout.cylinders: give the throw of every cylinder or of none")
         places = [
             c.position if c.position is not None else float(k) for k, c in enumerate(cylinders)
         ]
         order = sorted(range(len(places)), key=places.__getitem__)
         return tuple(order.index(k) for k in range(len(places)))
-    numbers = [number - 1 for number in given if number is not None]
+    numbers = [number - 1 for number in throws if number is not None]
     if sorted(set(numbers)) != list(range(max(numbers) + 1)):
         raise InputError(
             f"layout.cylinders: throws are numbered from 1 without a gap; "
@@ -162,7 +162,7 @@ def _numbers(scene: Scene) -> tuple[int, ...]:
 
 def _journals(bearings: Bearings, throws: list[float]) -> list[float]:
     """Places of the journals along the crank [m]; none where one throw is held by halves."""
-    given = bearings.journal_positions
+    positions = bearings.journal_positions
     steps = [b - a for a, b in pairwise(throws)]
     if any(step * steps[0] <= 0.0 for step in steps):
         raise InputError(
@@ -170,24 +170,25 @@ def _journals(bearings: Bearings, throws: list[float]) -> list[float]:
             f"at {', '.join(f'{place:.6g}' for place in throws)} m do not; cylinders on one pin "
             "have the same throw"
         )
-    if given is None:
+    if positions is None:
         if len(throws) == 1:
             return []
         inner = [0.5 * (a + b) for a, b in pairwise(throws)]
         return [2.0 * throws[0] - inner[0], *inner, 2.0 * throws[-1] - inner[-1]]
-    if len(given) != len(throws) + 1:
+    if len(positions) != len(throws) + 1:
         raise InputError(
             f"bearings.journal_positions: one more than throws is needed, {len(throws) + 1}; "
-            f"{len(given)} came"
+            f"{len(positions)} came"
         )
-    sign = 1.0 if given[-1] > given[0] else -1.0
+    sign = 1.0 if positions[-1] > positions[0] else -1.0
     for k, place in enumerate(throws):
-        if not sign * given[k] < sign * place < sign * given[k + 1]:
+        if not sign * positions[k] < sign * place < sign * positions[k + 1]:
             raise InputError(
                 f"bearings.journal_positions: throw {k + 1} at {place:.6g} m must lie between "
-                f"journals {k + 1} and {k + 2}; they are at {given[k]:.6g} and {given[k + 1]:.6g} m"
+                f"journals {k + 1} and {k + 2}; they are at {positions[k]:.6g} and "
+                f"{positions[k + 1]:.6g} m"
             )
-    return list(given)
+    return list(positions)
 
 
 def _shares(
@@ -215,19 +216,21 @@ def _unbalances(
 ) -> tuple[complex, ...]:
     """Of each throw; those given add up to the crank's."""
     whole = scene.crank.mass * scene.crank.center_of_mass
-    given = bearings.throw_unbalance
-    if given is None:
+    unbalances = bearings.throw_unbalance
+    if unbalances is None:
         return (complex(whole / count),) * count
-    if len(given) != count:
+    if len(unbalances) != count:
         raise InputError(
-            f"bearings.throw_unbalance: one for each throw is needed, {count}; {len(given)} came"
+            f"bearings.throw_unbalance: one for each throw is needed, {count}; "
+            f"{len(unbalances)} came"
         )
     firsts = [scene.cylinders[numbers.index(throw)] for throw in range(count)]
     each = tuple(
-        size * cmath.exp(1j * (c.phase + c.bank)) for size, c in zip(given, firsts, strict=True)
+        size * cmath.exp(1j * (c.phase + c.bank))
+        for size, c in zip(unbalances, firsts, strict=True)
     )
     apart = sum(each) - whole
-    if abs(apart) > _CLOSES * max(abs(whole), *map(abs, given)):
+    if abs(apart) > _CLOSES * max(abs(whole), *map(abs, unbalances)):
         total = sum(each)
         raise InputError(
             "bearings.throw_unbalance: together, each along its throw, they are the crank's mass * "

@@ -107,18 +107,18 @@ def _rebuilt(old: Any, changes: Sequence[_Change], place: tuple[str, ...]) -> An
     if isinstance(old, tuple):
         return _list(old, changes, place)
     known = _fields(old)
-    new, given = {}, {}
+    new, names = {}, {}
     for key, below in _by_step(changes).items():
         name = known.get(key, key)
         if name not in known.values():
             near = did_you_mean(key, list(known)) or f"; known are {', '.join(known)}"
             raise InputError(f"{below[0].name}: {_called(old)} has no {shown(key)}{near}")
         new[name] = _below(getattr(old, name), below, (*place, key))
-        given[name] = [change.name for change in below]
+        names[name] = [change.name for change in below]
     try:
         return dataclasses.replace(old, **new)
     except InputError as error:
-        raise InputError(_in_given_names(str(error), given)) from None
+        raise InputError(_in_given_names(str(error), names)) from None
 
 
 def _list(
@@ -155,11 +155,11 @@ def _called(part: Any) -> str:
     return "a scene" if type(part).__name__ == "Scene" else f"a {type(part).__name__}"
 
 
-def _in_given_names(text: str, given: Mapping[str, list[str]]) -> str:
+def _in_given_names(text: str, names_of: Mapping[str, list[str]]) -> str:
     """The sentence of a refusal with the name that the caller gave where it names a value so."""
     named = _OF_ONE.match(text)
-    if named and named[1] in given and len(given[named[1]]) == 1:
-        name = given[named[1]][0]
+    if named and named[1] in names_of and len(names_of[named[1]]) == 1:
+        name = names_of[named[1]][0]
         steps = [*filter(None, re.split(r"[.\[\]]+", named[1] + named[2]))]
         whole = re.split(r"__|[.]", name)
         for k in range(len(whole)):  # the refusal names it from here on
@@ -168,7 +168,7 @@ def _in_given_names(text: str, given: Mapping[str, list[str]]) -> str:
                 rest = "".join(f"[{step}]" if step.isdigit() else f".{step}" for step in below)
                 return f"{name}{rest}: {text[named.end() :]}"
         return f"{name}: {text}"
-    names = [name for several in given.values() for name in several]
+    names = [name for several in names_of.values() for name in several]
     if any(text.startswith(name) for name in names):
         return text
     return f"{' and '.join(names)}: {text}"

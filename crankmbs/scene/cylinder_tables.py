@@ -37,13 +37,13 @@ def by_layout(raw: dict[str, Any]) -> dict[str, Any]:
             f"layout.{twice[0]}: beside [[cylinder]], whose phase and bank say the same; remove it"
         )
     gas = content.get("gas")
-    given = [key for key in _PRESSURES if any(key in table for table in cylinders)]
-    if given and not isinstance(gas, dict):
+    keys = [key for key in _PRESSURES if any(key in table for table in cylinders)]
+    if keys and not isinstance(gas, dict):
         raise InputError(
-            f"cylinder: {given[0]} needs [gas], with ambient and stroke; it is not there"
+            f"cylinder: {keys[0]} needs [gas], with ambient and stroke; it is not there"
         )
     if isinstance(gas, dict):
-        content["gas"] = gas | {key: _each(key, cylinders, gas) for key in given}
+        content["gas"] = gas | {key: _each(key, cylinders, gas) for key in keys}
     bare = [{k: v for k, v in table.items() if k not in _PRESSURES} for table in cylinders]
     content["layout"] = layout | {"cylinders": bare}
     return content

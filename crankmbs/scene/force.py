@@ -18,10 +18,10 @@ from crankmbs.numerics.piecewise import Piecewise
 from crankmbs.scene.schema import part
 from crankmbs.scene.windowed import Windowed, one_of_kinds
 
-__all__ = ["AnyForce", "Given", "Law", "PistonForce"]
+__all__ = ["AnyForce", "Law", "PistonForce", "PythonLaw"]
 
 
-class Given(NamedTuple):
+class PythonLaw(NamedTuple):
     """A function(t, cycle_angle, displacement, velocity) of Python, the force of four numbers [s,
     rad, m, m/s]; what it declares of where it bends or jumps, [s, rad, m], and its period [rad]."""
 
@@ -46,7 +46,7 @@ class Law(NamedTuple):
     over_angle: Cycle | None = None
     over_time: Piecewise | None = None
     viscous: float = 0.0
-    given: Given | None = None
+    python: PythonLaw | None = None
 
     @property
     def switches(self) -> bool:
@@ -56,7 +56,7 @@ class Law(NamedTuple):
     @property
     def period(self) -> float | None:
         """Crank angle [rad] after which it comes again, where that is no single revolution."""
-        repeating = self.over_angle or self.given
+        repeating = self.over_angle or self.python
         return None if repeating is None else repeating.period
 
 
@@ -84,7 +84,7 @@ class PistonForce(Windowed):
         """Whether it is always the same function of angle and speed."""
         law = self.law
         varies = law.over_time is not None
-        unknown = law.given is not None and law.given.period is None
+        unknown = law.python is not None and law.python.period is None
         return not (varies or self.has_window or unknown)
 
     @property

@@ -22,7 +22,7 @@ from crankmbs.scene.schema import CsvFile, Float, folder_of, part, si, to_si
 from crankmbs.scene.tables import CylinderTable, Header, Table, tables_of
 from crankmbs.scene.units import BAR, DEGREE
 
-__all__ = ["Gas", "Indicator", "Polytrope", "PressureGiven", "tables_of"]
+__all__ = ["AnyPressure", "Gas", "Indicator", "Polytrope", "tables_of"]
 
 Pressure = Annotated[Float, Gt(0), si("pressure")]
 
@@ -74,12 +74,12 @@ class Indicator:
             )
 
 
-PressureGiven = float | Table | CylinderTable | tuple[Table, ...]
+AnyPressure = float | Table | CylinderTable | tuple[Table, ...]
 _NUMBER = re.compile(r"[+-]?\.?[0-9]")
 _FILE_NAME = re.compile(r".*\.[^\W\d]\w*")  # which a quantity never is
 
 
-def _source(value: Any, info: ValidationInfo) -> PressureGiven:
+def _source(value: Any, info: ValidationInfo) -> AnyPressure:
     """A file, a list of files, or a quantity; from Python tables."""
     if isinstance(value, list | tuple):
         if not value:
@@ -116,8 +116,8 @@ def _of_one(value: Any, info: ValidationInfo) -> Any:
 
 
 def _table(value: Any, info: ValidationInfo) -> Any:
-    given = info.data or {}
-    how = HowRead(*(given.get(name) for name in HowRead._fields))
+    keys = info.data or {}
+    how = HowRead(*(keys.get(name) for name in HowRead._fields))
     if how != HowRead() and isinstance(value, str | Path):
         return read_measured(folder_of(info) / value, how)
     return _FILE(value, info)
@@ -146,9 +146,8 @@ def _motored(value: Any, info: ValidationInfo) -> Any:
     return _source(value, info)
 
 
-_Given = float | Table | CylinderTable | tuple[Table, ...]
-PressureSource = Annotated[_Given, BeforeValidator(_source)]
-MotoredSource = Annotated[_Given | Polytrope, BeforeValidator(_motored)]
+PressureSource = Annotated[AnyPressure, BeforeValidator(_source)]
+MotoredSource = Annotated[AnyPressure | Polytrope, BeforeValidator(_motored)]
 
 _NO_FILE = ("gas_exchange_tdc", "pchip", None, None)
 _OF_FILES = "zero, interpolation, closing and cycles belong to a pressure file; remove them"
@@ -223,10 +222,10 @@ class Gas:
 
     def _forget_how_read(self) -> None:
         """What was said of a file is done, and does not hold of its rows."""
-        given = [name for name in HowRead._fields if getattr(self, name) is not None]
-        if given and not self.tables + tables_of(self.crank_end):
-            raise InputError(f"{', '.join(given)}: belongs to a pressure file; remove it")
-        for name in given:
+        keys = [name for name in HowRead._fields if getattr(self, name) is not None]
+        if keys and not self.tables + tables_of(self.crank_end):
+            raise InputError(f"{', '.join(keys)}: belongs to a pressure file; remove it")
+        for name in keys:
             object.__setattr__(self, name, None)
 
     def _check_files(self) -> None:
@@ -257,10 +256,10 @@ class Gas:
     def _check_constants(self) -> None:
         if isinstance(self.pressure, float):
             self._check_no_file("a constant")
-        for whose, given in (("", self.pressure), ("crank_end: ", self.crank_end)):
-            if self.absolute and isinstance(given, float) and given < 0.0:
+        for whose, source in (("", self.pressure), ("crank_end: ", self.crank_end)):
+            if self.absolute and isinstance(source, float) and source < 0.0:
                 raise InputError(
-                    f"{whose}an absolute pressure cannot be negative; {given:.6g} Pa came; give "
+                    f"{whose}an absolute pressure cannot be negative; {source:.6g} Pa came; give "
                     "absolute = false when it is gauge"
                 )
 

@@ -152,7 +152,7 @@ def by_name(headings: Sequence[Heading], *, time: bool) -> list[int]:
     return [k for k, each in enumerate(headings) if tells(each) and is_named(each.name)]
 
 
-def angle_places(headings: Sequence[Heading], angle: str | None, where: str) -> list[int]:
+def angle_places(headings: Sequence[Heading], angle: str | None, file: str) -> list[int]:
     """The places of the columns that may be the crank angle: the one called ``angle``, else those
     told by their names or units.
 
@@ -164,7 +164,7 @@ def angle_places(headings: Sequence[Heading], angle: str | None, where: str) -> 
     [1]
     """
     if angle is not None:
-        return pick(headings, angle, where)[:1]
+        return pick(headings, angle, file)[:1]
     return [k for k, heading in enumerate(headings) if is_angle(heading)]
 
 
@@ -173,7 +173,7 @@ def angle_factor(heading: Heading) -> float:
     return _ANGULAR.get(heading.unit, DEGREE)
 
 
-def pick(headings: Sequence[Heading], columns: str, where: str) -> list[int]:
+def pick(headings: Sequence[Heading], columns: str, file: str) -> list[int]:
     """The places of the columns that ``columns`` names, in its order.
 
     columns : names with commas between them; "PCYL1..4" are PCYL1 to PCYL4, "P*" all that begin so
@@ -196,7 +196,7 @@ def pick(headings: Sequence[Heading], columns: str, where: str) -> list[int]:
             listed = ", ".join(dict.fromkeys(filter(None, known))) or "without names"
             listed = listed if len(listed) < 200 else f"{listed[:200]} ..."
             raise InputError(
-                f"{where}: no column is named {shown(name)}; the columns are {listed}"
+                f"{file}: no column is named {shown(name)}; the columns are {listed}"
                 f"{did_you_mean(name, known)}"
             )
         indices += [k for k in places if k not in indices]

@@ -210,16 +210,16 @@ class Cylinder:
         InputError : a rod or a piston that cannot be
         """
         if self.rod is not None:
-            rod = replace(rod, **_given(self.rod))
+            rod = replace(rod, **_values_of(self.rod))
         if self.piston is not None:
-            given = _given(self.piston)
-            if {"bore", "area"} & given.keys():
-                given = {"bore": None, "area": None} | given
-            piston = replace(piston, **given)
+            values = _values_of(self.piston)
+            if {"bore", "area"} & values.keys():
+                values = {"bore": None, "area": None} | values
+            piston = replace(piston, **values)
         return RunningGear(radius if self.radius is None else self.radius, rod, piston)
 
 
-def _given(part: OwnRod | OwnPiston) -> dict[str, Any]:
+def _values_of(part: OwnRod | OwnPiston) -> dict[str, Any]:
     """The values that one cylinder sets."""
     return {name: value for name, value in vars(part).items() if value is not None}
 

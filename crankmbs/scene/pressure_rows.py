@@ -55,9 +55,9 @@ def check_rows(
     ------
     InputError : the file, the rule, what came, and the way out
     """
-    where, angle = table.source, table.x
+    file, angle = table.source, table.x
     if len(angle) < 2:
-        raise InputError(f"{where}: a pressure table needs at least two rows")
+        raise InputError(f"{file}: a pressure table needs at least two rows")
     _check_order(table)
     count = cycles_in(table, period)
     span = angle[-1] - angle[0]
@@ -67,19 +67,19 @@ def check_rows(
     stroke = round(period / math.pi)
     if stroke == 4 and abs(span - 0.5 * period) < SAME_ANGLE and table.y[-1] == table.y[0]:
         raise InputError(
-            f"{where}: the rows close after {span / DEGREE:g} degrees, as a two-stroke cycle "
+            f"{file}: the rows close after {span / DEGREE:g} degrees, as a two-stroke cycle "
             "does; give stroke = 2, or the other half of the four-stroke cycle"
         )
     widest = max([*(b - a for a, b in pairwise(angle)), count * period - span])
     if widest > period / 2.0 + SAME_ANGLE:
         raise InputError(
-            f"{where}: a gap of {widest / DEGREE:g} degrees without a row; the table must "
+            f"{file}: a gap of {widest / DEGREE:g} degrees without a row; the table must "
             f"span the cycle of {period / DEGREE:g} degrees with no gap above its half"
         )
     lowest = min(table.y)
     if absolute and lowest < 0.0:
         raise InputError(
-            f"{where}: an absolute pressure cannot be negative; {lowest:.6g} Pa came at "
+            f"{file}: an absolute pressure cannot be negative; {lowest:.6g} Pa came at "
             f"{angle[table.y.index(lowest)] / DEGREE:g} degrees; correct what the pressures are "
             "measured from, or give absolute = false when the file is gauge"
         )
@@ -171,21 +171,21 @@ def _check_several(table: Table, period: float, cycles: str | None) -> None:
 
 
 def _check_order(table: Table) -> None:
-    where, x = table.source, table.x
+    file, x = table.source, table.x
     for k, (a, b) in enumerate(pairwise(x)):
         if b < a:
             raise InputError(
-                f"{where}: crank angles must not decrease (two rows at one angle are a jump); in "
+                f"{file}: crank angles must not decrease (two rows at one angle are a jump); in "
                 f"row {k + 2} {b / DEGREE:g} follows {a / DEGREE:g} degrees"
             )
         if a == b and k > 0 and x[k - 1] == a:
             raise InputError(
-                f"{where}: rows {k} to {k + 2} all stand at {a / DEGREE:g} degrees; give two, a "
+                f"{file}: rows {k} to {k + 2} all stand at {a / DEGREE:g} degrees; give two, a "
                 "jump from the first pressure to the second"
             )
         if 0.0 < b - a <= SAME_ANGLE:
             raise InputError(
-                f"{where}: rows {k + 1} and {k + 2} lie {(b - a) / DEGREE:.2g} degrees apart, too "
+                f"{file}: rows {k + 1} and {k + 2} lie {(b - a) / DEGREE:.2g} degrees apart, too "
                 "near to be told apart; give both the same angle for a jump, or drop one"
             )
 

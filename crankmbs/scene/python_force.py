@@ -9,7 +9,7 @@ from annotated_types import Gt
 from pydantic import PlainSerializer, PlainValidator
 
 from crankmbs.numerics.function import named
-from crankmbs.scene.force import Given, Law, PistonForce
+from crankmbs.scene.force import Law, PistonForce, PythonLaw
 from crankmbs.scene.python_load import KeptName, Numbers, OfFunction, function_of, within_period
 from crankmbs.scene.schema import Float, part, si
 
@@ -52,7 +52,7 @@ class Force(OfFunction, PistonForce):
             return Law()
         angles, period = within_period(self.kink_angles, self.period)
         declared = self.kink_times, angles, self.kink_displacements
-        return Law(given=Given(self.function, *declared, period))
+        return Law(python=PythonLaw(self.function, *declared, period))
 
 
 PistonForce.unwritten["function"] = Force

@@ -36,9 +36,9 @@ class Extent:
         return (self.value * period if self.unit == "cycle" else self.value), self.unit == "s"
 
 
-def _check_positive(number: float, came: str) -> None:
+def _check_positive(number: float, written: str) -> None:
     if not 0.0 < number < math.inf:
-        raise InputError(f"must be finite and above 0; {came} came")
+        raise InputError(f"must be finite and above 0; {written} came")
 
 
 def _extent(value: object, info: ValidationInfo) -> object:

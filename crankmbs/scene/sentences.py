@@ -45,15 +45,15 @@ _IN_PYTHON = {
 class PartError(InputError):
     """A part below another one, of a class that its keys tell, could not be built."""
 
-    def __init__(self, error: ValidationError, root: type[Any], came: Mapping[str, Any]) -> None:
+    def __init__(self, error: ValidationError, root: type[Any], raw: Mapping[str, Any]) -> None:
         super().__init__("a part could not be built")
-        self.problem = error, root, came
+        self.problem = error, root, raw
 
 
 def sentence(
     error: ValidationError,
     root: type[Any],
-    came: Mapping[str, Any],
+    raw: Mapping[str, Any],
     *,
     in_python: bool = False,
     below: Sequence[int | str] = (),
@@ -70,21 +70,21 @@ def sentence(
         return sentence(*cause.problem, in_python=in_python, below=[*below, *loc])
     if in_python:
         loc = _by_name(root, loc)
-    where, word = _dotted([*below, *loc]), "argument" if in_python else "key"
+    place, word = _dotted([*below, *loc]), "argument" if in_python else "key"
     if kind in _MISSING:
         how = _how_to_give(root, loc) if in_python else _how_to_add(root, loc)
-        return f"{where}: this {word} is missing; {how}"
+        return f"{place}: this {word} is missing; {how}"
     if kind in _UNKNOWN:
         names = _names_at(root, loc[:-1], in_python)
-        return f"{where}: unknown {word}{_meant(loc[-1], names) or _known(loc[-1], names, word)}"
+        return f"{place}: unknown {word}{_meant(loc[-1], names) or _known(loc[-1], names, word)}"
     if kind == "value_error":
         text = str(cause)
         text = _as_a_call(text) if in_python else text
-        return f"{where}: {text}" if where else text
-    value = _value_at(came, loc)
+        return f"{place}: {text}" if place else text
+    value = _value_at(raw, loc)
     near = _near_word(value, problem)
     rule = (_rule_in_python if in_python else _rule)(problem, root, loc)
-    return f"{where}: {rule}; {shown(value)} came{near}"
+    return f"{place}: {rule}; {shown(value)} came{near}"
 
 
 def did_you_mean(word: str, known: Sequence[str], least: float = 0.6) -> str:
@@ -123,11 +123,11 @@ def _dotted(loc: Sequence[int | str]) -> str:
     return text.removeprefix(".")
 
 
-def _value_at(came: Any, loc: Sequence[int | str]) -> Any:
+def _value_at(raw: Any, loc: Sequence[int | str]) -> Any:
     """What the user wrote there: after conversion it would be in other units."""
     for step in _keys(loc):
-        came = came[step]
-    return came
+        raw = raw[step]
+    return raw
 
 
 def _near_word(value: Any, problem: Any) -> str:

@@ -127,7 +127,7 @@ def unit_of(dimension: str) -> str:
     return next(iter(_LISTED.get(dimension) or _USUAL[dimension]))
 
 
-def check_size(value: float, dimension: str, came: object) -> None:
+def check_size(value: float, dimension: str, written: object) -> None:
     """Refuse a finite SI value whose products double precision does not hold.
 
     Raises
@@ -140,7 +140,7 @@ def check_size(value: float, dimension: str, came: object) -> None:
         unit = unit_of(dimension)
         raise InputError(
             f"must be 0, or from {_SMALLEST:g} to {_LARGEST:g} {unit} in size, or calculating with "
-            f"it overflows; {shown(came)} came"
+            f"it overflows; {shown(written)} came"
         )
 
 

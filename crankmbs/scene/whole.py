@@ -91,12 +91,12 @@ def _check_loop(scene: Scene) -> None:
     """Refuse cylinders whose crank cannot turn, or whose gas has nothing to press on."""
     for number, cylinder in enumerate(scene.cylinders, start=1):
         special = (cylinder.radius, cylinder.rod, cylinder.piston) != (None, None, None)
-        where = f"layout.cylinders[{number}]: " if special else ""
+        prefix = f"layout.cylinders[{number}]: " if special else ""
         try:
             gear = cylinder.running_gear(scene.crank.radius, scene.rod, scene.piston)
             _check_gear(gear, gas=scene.gas is not None)
         except InputError as error:
-            raise InputError(f"{where}{error}") from None
+            raise InputError(f"{prefix}{error}") from None
 
 
 def _check_gear(gear: RunningGear, *, gas: bool) -> None:
@@ -125,10 +125,10 @@ def _check_gas(scene: Scene) -> None:
         source = gas and getattr(gas, key)
         if isinstance(source, CylinderTable | tuple):
             count = len(tables_of(source))
-            given = "columns" if isinstance(source, CylinderTable) else "files"
+            kind = "columns" if isinstance(source, CylinderTable) else "files"
             if count != cylinders:
                 raise InputError(
-                    f"gas.{key}: as many {given} as cylinders are needed, {cylinders}, or one "
+                    f"gas.{key}: as many {kind} as cylinders are needed, {cylinders}, or one "
                     f"for all; {count} came"
                 )
     if scene.fuel is None:
@@ -165,14 +165,14 @@ def _check_forces(scene: Scene) -> None:
     """Refuse forces on pistons that are not there, over a travel that is left, and windows of speed
     where the speed is prescribed."""
     for number, force in enumerate(scene.force, start=1):
-        where = f"force[{number}]"
+        key = f"force[{number}]"
         if force.cylinder is not None and force.cylinder > len(scene.cylinders):
             raise InputError(
-                f"{where}.cylinder: must be from 1 to {len(scene.cylinders)}; {force.cylinder} came"
+                f"{key}.cylinder: must be from 1 to {len(scene.cylinders)}; {force.cylinder} came"
             )
         if scene.motion is not None and (force.from_speed, force.until_speed) != (None, None):
             raise InputError(
-                f"{where}: with [motion] the speed is prescribed, and a window is one of time; "
+                f"{key}: with [motion] the speed is prescribed, and a window is one of time; "
                 "give after and until, or free the crank with [start]"
             )
         if isinstance(force, TravelTable):
@@ -183,7 +183,7 @@ def _check_forces(scene: Scene) -> None:
             spare = _SPARE * stroke
             if force.file.x[0] > spare or force.file.x[-1] < stroke - spare:
                 said = UNCOVERED.format(stroke=1e3 * stroke, low=low, high=high)
-                raise InputError(f"{where}.file: {force.file.source}: {said}")
+                raise InputError(f"{key}.file: {force.file.source}: {said}")
 
 
 def _check_bearings(scene: Scene) -> None:

@@ -60,8 +60,8 @@ def together(folder: Path) -> Iterator[Path]:
     except CrankmbsError:
         raise
     except OSError as error:
-        where, why = _where(error, part, folder), error.strerror or error
-        raise OutputError(f"{where}: cannot be written ({why}); choose another folder") from None
+        place, why = _where(error, part, folder), error.strerror or error
+        raise OutputError(f"{place}: cannot be written ({why}); choose another folder") from None
     finally:
         _filled.remove(part)
         os.close(owner)

@@ -150,7 +150,7 @@ def cases_of(scene: Scene, vary: object) -> Cases:
             'vary must name what is varied, such as {"rod.length": "0.14..0.2 m:25"}, or be a '
             f"Sample or a file of cases; {shown(vary)} came"
         )
-    return Grid(tuple(knob_of(scene, name, given) for name, given in vary.items()))
+    return Grid(tuple(knob_of(scene, name, values) for name, values in vary.items()))
 
 
 def _listed(scene: Scene, file: Path) -> Cases:

@@ -177,8 +177,8 @@ def _why_not(plan: Plan, data: xr.Dataset, reading: Reading, values: Array) -> s
     first = int(missing[0])
     (at,) = plan.cases.values(range(first, first + 1))
     knobs = zip(plan.cases.names, at, plan.cases.units, strict=True)
-    where = ", ".join(f"{name} = {value:.6g} {unit}".rstrip() for name, value, unit in knobs)
+    place = ", ".join(f"{name} = {value:.6g} {unit}".rstrip() for name, value, unit in knobs)
     return (
         f"{missing.size} of {len(values)} runs have no {reading.words}, and indices need all; the "
-        f"first at {where}: {data['message'].values[first]}; narrow the ranges"
+        f"first at {place}: {data['message'].values[first]}; narrow the ranges"
     )

@@ -103,7 +103,7 @@ class _Kind(NamedTuple):
         return unit_of(self.dimension) if self.dimension else ""
 
 
-def knob_of(scene: Scene, name: str, given: object, most: int = _MOST) -> Knob:
+def knob_of(scene: Scene, name: str, values: object, most: int = _MOST) -> Knob:
     """A knob from a text such as "0.05..0.5 kg m^2:40", or from a sequence of values.
 
     Raises
@@ -115,20 +115,20 @@ def knob_of(scene: Scene, name: str, given: object, most: int = _MOST) -> Knob:
     array([0.14, 0.17, 0.2 ])
     """
     kind = _kind(scene, name)
-    if isinstance(given, str):
-        if _RANGE.fullmatch(given):
-            return _spaced(kind, given)
-        items: Sequence[object] = [item.strip() for item in given.split(",")]
-    elif isinstance(given, Sequence | np.ndarray):
-        items = given.tolist() if isinstance(given, np.ndarray) else given
+    if isinstance(values, str):
+        if _RANGE.fullmatch(values):
+            return _spaced(kind, values)
+        items: Sequence[object] = [item.strip() for item in values.split(",")]
+    elif isinstance(values, Sequence | np.ndarray):
+        items = values.tolist() if isinstance(values, np.ndarray) else values
     else:
-        raise InputError(f"{name}: must be a text or a sequence of values; {shown(given)} came")
+        raise InputError(f"{name}: must be a text or a sequence of values; {shown(values)} came")
     if not 1 <= len(items) <= most:
         raise InputError(f"{name}: must have from 1 to {most} values; {len(items)} came")
     return _knob(kind.name, kind.unit, [_value(scene, kind, item) for item in items])
 
 
-def interval_of(scene: Scene, name: str, given: object) -> Interval:
+def interval_of(scene: Scene, name: str, text: object) -> Interval:
     """The bounds of a knob, from a text such as "0.05..0.5 kg m^2" or "0.05..0.5 kg m^2:log".
 
     Raises
@@ -140,11 +140,11 @@ def interval_of(scene: Scene, name: str, given: object) -> Interval:
     0.2
     """
     kind = _kind(scene, name)
-    match = _RANGE.fullmatch(given) if isinstance(given, str) else None
+    match = _RANGE.fullmatch(text) if isinstance(text, str) else None
     if match is None or match[4] not in (None, ":log"):
         raise InputError(
             f'{name}: must be two bounds, such as "0.05..0.5 kg m^2" or "0.05..0.5 kg m^2:log"; '
-            f"{shown(given)} came"
+            f"{shown(text)} came"
         )
     return _interval(kind, match, match[4] is not None)
 
@@ -198,15 +198,15 @@ def _interval(kind: _Kind, match: re.Match[str], log: bool) -> Interval:
     return Interval(kind.name, kind.unit, low, high, log, kind.whole)
 
 
-def _spaced(kind: _Kind, given: str) -> Knob:
-    match = _RANGE.fullmatch(given)
+def _spaced(kind: _Kind, text: str) -> Knob:
+    match = _RANGE.fullmatch(text)
     assert match is not None
     count, _, way = (match[4] or ":")[1:].partition(":")
     number = int(count) if count.isdecimal() and len(count) < 9 else 0
     if not 2 <= number <= _MOST or way not in ("", "log"):
         raise InputError(
             f"{kind.name}: a range needs how many values it has, from 2 to {_MOST}, then perhaps "
-            f"log; {shown(given)} came; {_GRAMMAR}"
+            f"log; {shown(text)} came; {_GRAMMAR}"
         )
     if (
         kind.dimension is None and match[3] and kind.name not in DERIVED

@@ -361,8 +361,8 @@ def _decisions(train: CrankTrain) -> Array:
     """Crank angles [rad] in one period at which the fuel is decided."""
     if train.law is None:
         return np.empty(0)
-    own = train.scene.period
-    turns = own * np.arange(round(train.period / own))
+    cycle = train.scene.period
+    turns = cycle * np.arange(round(train.period / cycle))
     return np.asarray(np.add.outer(turns, train.law.angles).ravel())
 
 
@@ -374,8 +374,8 @@ def _near_folds(train: CrankTrain) -> Array:
     """
     period, marks = train.period, [np.empty(0)]
     turns = 2.0 * math.pi * np.arange(round(period / (2.0 * math.pi)))
-    own = zip(train.scene.cylinders, train.scene.running_gear, strict=True)
-    for cylinder, (radius, length, offset) in ((c, gear.shape) for c, gear in own):
+    cylinders = zip(train.scene.cylinders, train.scene.running_gear, strict=True)
+    for cylinder, (radius, length, offset) in ((c, gear.shape) for c, gear in cylinders):
         for fold, gap in ((0.5, length - radius + offset), (-0.5, length - radius - offset)):
             width = math.sqrt(2.0 * max(gap, 0.0) / radius)
             if 0.0 < width < _WIDEST:

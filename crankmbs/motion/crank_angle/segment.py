@@ -290,9 +290,9 @@ def _errors_of(segment: AngleSegment) -> Errors:
     if segment.modes:
         terms = terms.fired(segment.shares)
     pace = terms.pace
-    own = np.column_stack([rule.integrals(finer.nodes).T, rule.weights])
+    weights = np.column_stack([rule.integrals(finer.nodes).T, rule.weights])
     to_nodes = np.column_stack([finer.matrix.T, finer.weights])
-    gained, spent = segment.torque @ own, segment.slowness @ own
+    gained, spent = segment.torque @ weights, segment.slowness @ weights
     with np.errstate(invalid="ignore", divide="ignore"):
         energy = segment.energy[:-1, None] + sense * pace * gained[:, :-1]
         slowness = np.sqrt(0.5 * terms.inertia / np.maximum(energy, 0.0))

@@ -202,7 +202,7 @@ def _solution(scene: Scene, answer: Pass, better: Pass, setup: Setup) -> Solutio
         reasons = (slow,)
     evaluations = path.evaluations + better.path.evaluations
     steps = path.steps + better.path.steps
-    unknown = {} if check else dict.fromkeys({**VARIABLES, **samples.own}, math.inf)
+    unknown = {} if check else dict.fromkeys({**VARIABLES, **samples.computed}, math.inf)
     return Solution(samples, status, text, evaluations, steps, check, unknown, reasons)
 
 

@@ -116,9 +116,9 @@ class Reduced:
         parts = (part for load in self.train.loads for part in load.parts[:3])
         load = sum(part.largest for part in parts if part is not None)
         start = self.train.scene.start
-        for given in self.train.loads:
-            if given.parts.function is not None and start is not None:
-                load += abs(given.parts.function.number(0.0, start.angle, start.speed))
+        for torque in self.train.loads:
+            if torque.parts.function is not None and start is not None:
+                load += abs(torque.parts.function.number(0.0, start.angle, start.speed))
         period = self.train.period
         count = 720 * round(period / self.train.scene.period) + 1
         angles = 0.1 + np.linspace(0.0, period, count)  # no fold lies there

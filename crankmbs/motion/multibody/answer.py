@@ -48,9 +48,9 @@ def solution(
     cost: tuple[int, int],
 ) -> Solution:
     """What a run returns, where something errs beside rounding; cost : evaluations and steps."""
-    own = {name: each for name, each in values.items() if name not in _MOTION}
+    computed = {name: each for name, each in values.items() if name not in _MOTION}
     time, theta, omega, alpha, residual = (values[name] for name in _MOTION)
-    samples = Samples(time, theta, omega, alpha, residual, own)
+    samples = Samples(time, theta, omega, alpha, residual, computed)
     errors = {name: errors[name] + least for name, least in rounding(values).items()}
     return Solution(samples, *said, *cost, errors=errors)
 
@@ -95,8 +95,8 @@ class Answers:
         rests = omega[:, None] == 0.0
         friction = np.where(rests, motion.get("friction_force", friction), friction)
         applied = motion.get("applied_force", np.zeros_like(gas))
-        given = {"alpha": "crank_acceleration"} if driven else {"torque": "external_torque"}
-        known = {name: motion[variable] for name, variable in given.items()}
+        of_motion = {"alpha": "crank_acceleration"} if driven else {"torque": "external_torque"}
+        known = {name: motion[variable] for name, variable in of_motion.items()}
         system = self.model.states(theta, omega, gas + friction + applied, **known)
         values = self._of_bodies(system) | self._of_joints(system)
         values |= {"gas_force": gas, **self.forces.pressures(theta, gas)}

@@ -39,5 +39,5 @@ def run(train: CrankTrain, sampled: Solution) -> Solution:
 
 def _values(answers: Answers, at: Samples) -> dict[str, Array]:
     names = ("crank_angle", "crank_speed", "crank_acceleration")
-    motion = dict(zip(names, (at.theta, at.omega, at.alpha), strict=True)) | dict(at.own)
+    motion = dict(zip(names, (at.theta, at.omega, at.alpha), strict=True)) | dict(at.computed)
     return answers.consistent(motion, driven=True) | motion | {"time": at.time}

@@ -111,8 +111,8 @@ class Forces:
         scene, laws = self.train.scene, [force.law for force in self.train.scene.force]
         tables = [*(one.parts.over_time for one in scene.torque), *(law.over_time for law in laws)]
         every = {time for table in tables if table is not None for time in _cuts_of(table)}
-        given = (law.given.times for law in laws if law.given)
-        return tuple(every.union(times_of(scene.torque), *given))
+        declared = (law.python.times for law in laws if law.python)
+        return tuple(every.union(times_of(scene.torque), *declared))
 
     @property
     def is_cut(self) -> bool:
@@ -232,7 +232,7 @@ class Forces:
     def _push(self, k: int, displacement: float, slides: float, bounds: Bounds, mode: Mode) -> Push:
         """That on the piston of the cylinder k, which is there and slides with this sign."""
         rubs, phase = self._friction, float(self._phases[k])
-        viscous, given = rubs.viscous, list[Push]()
+        viscous, whole = rubs.viscous, list[Push]()
         gas = _straight(self._gas(k, mode.shares), *bounds.angles)
         terms = [(1, gas)]
         for law in self._laws(k, mode.loads):
@@ -244,15 +244,15 @@ class Forces:
                 if part is not None:
                     terms.append((slot, _straight(part, *ranges[slot])))
             viscous += law.viscous
-            if law.given is not None:
-                given.append(_at_cycle_angle(law.given.function, phase))
+            if law.python is not None:
+                whole.append(_at_cycle_angle(law.python.function, phase))
         if viscous:
             terms.append((3, lambda velocity: -viscous * velocity))
         if rubs.ring_force or rubs.ring_pressure:
             ring = math.copysign(rubs.ring_force, slides)
             pressed = math.copysign(rubs.ring_pressure, slides)
-            given.append(lambda _time, theta, _s, _v: -ring - pressed * abs(gas(theta)))
-        return _total(terms, given)
+            whole.append(lambda _time, theta, _s, _v: -ring - pressed * abs(gas(theta)))
+        return _total(terms, whole)
 
     def _gas(self, k: int, shares: Sequence[float]) -> Piecewise | Cycle:
         """The gas force [N] of a cylinder over the crank angle [rad]."""
@@ -275,10 +275,10 @@ def _at_cycle_angle(function: Push, phase: float) -> Push:
 
 
 def _total(
-    terms: list[tuple[int, Callable[[float], float]]], given: Sequence[Callable[..., float]]
+    terms: list[tuple[int, Callable[[float], float]]], whole: Sequence[Callable[..., float]]
 ) -> Callable[..., float]:
     """The sum of functions of one argument, by its number, and of all."""
-    if len(terms) == 1 and not given:
+    if len(terms) == 1 and not whole:
         slot, alone = terms[0]
         return lambda *at: alone(at[slot])
 
@@ -286,7 +286,7 @@ def _total(
         value = 0.0
         for slot, term in terms:
             value += term(at[slot])
-        for function in given:
+        for function in whole:
             value += function(*at)
         return value
 

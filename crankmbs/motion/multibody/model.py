@@ -118,9 +118,9 @@ class Model:
         at, faster = np.array([theta]), np.array([omega])
         loop = closed_loops(self.scene, at)
         down, speeds = displacements(self.scene, loop)[:, 0], -loop.x_1[:, 0] * omega
-        where = zip(self.pushes, down.tolist(), speeds.tolist(), strict=False)
+        places = zip(self.pushes, down.tolist(), speeds.tolist(), strict=False)
         push = np.zeros((1, len(down)))
-        push[0, : len(self.pushes)] = [each(time, theta, *place) for each, *place in where]
+        push[0, : len(self.pushes)] = [each(time, theta, *place) for each, *place in places]
         if driven:
             return self.states(at, faster, push, alpha=np.zeros(1))
         return self.states(at, faster, push, torque=np.array([self.torque(time, theta, omega)]))
@@ -146,8 +146,8 @@ class Model:
             )
             for t in (-0.5 * step, 0.5 * step)
         )
-        own, *shifts = quiet_shifts((after.acceleration[0] - before.acceleration[0]) / step, step)
-        smooth = omega + float(own[2]) if omega else 0.0  # at rest it is not to turn back
+        crank, *shifts = quiet_shifts((after.acceleration[0] - before.acceleration[0]) / step, step)
+        smooth = omega + float(crank[2]) if omega else 0.0  # at rest it is not to turn back
         return (smooth, alpha), *(x[0] + shift for x, shift in zip(here[:3], shifts, strict=True))
 
     def run(
@@ -220,9 +220,9 @@ class Model:
         push : shape (m, n) [N], on each piston towards the crank; of a free crank its torque, of a
         driven one its acceleration, shape (m,) [N m, rad/s2]
         """
-        given = alpha if torque is None else torque
-        assert given is not None
-        rows = theta, omega, push, given
+        drive = alpha if torque is None else torque
+        assert drive is not None
+        rows = theta, omega, push, drive
         blocks = ([row[k : k + _BLOCK] for row in rows] for k in range(0, len(theta), _BLOCK))
         parts = [self._block(*block, free=torque is not None) for block in blocks]
         return Consistent(*map(np.concatenate, zip(*parts, strict=True)))
@@ -232,13 +232,13 @@ class Model:
         return np.asarray(0.5 * at.velocity**2 @ self.mass - at.position @ self.weight)
 
     def _block(
-        self, theta: Array, omega: Array, push: Array, given: Array, *, free: bool
+        self, theta: Array, omega: Array, push: Array, drive: Array, *, free: bool
     ) -> Consistent:
         """The states of one block, by the tangent u of J u = 0, u_theta = 1.
 
         alpha = u (f - M w) / (u M u),    q'' = u alpha + w,    J w = -J' q',  w_theta = 0
 
-        given : the torque on a free crank, or the acceleration of a driven one
+        drive : the torque on a free crank, or the acceleration of a driven one
         """
         q, ahead = closed(self.scene, theta), np.zeros(len(theta))
         jacobian, _, open_by = self._constraints(q)
@@ -251,16 +251,16 @@ class Model:
         turning = np.einsum("mcb,mb->mc", bend, v[:, self._turns] ** 2)
         w = -np.linalg.solve(jacobian, np.column_stack([turning, ahead])[..., None])[..., 0]
         force = self.weight + push @ self._pushed
-        alpha = given
+        alpha = drive
         if free:
-            force[:, 2] += given
+            force[:, 2] += drive
             alpha = ((force - w * self.mass) * u).sum(axis=1) / (u**2 @ self.mass)
         a = u * alpha[:, None] + w
         rest = (force - a * self.mass)[..., None]
         joints = -np.linalg.solve(np.swapaxes(jacobian, 1, 2), rest)[..., 0]
         count = 2 * len(self.mechanism.hinges)
         hinges = joints[:, :count].reshape(len(theta), -1, 2)
-        return Consistent(q, v, a, hinges, joints[:, count:-1], given if free else joints[:, -1])
+        return Consistent(q, v, a, hinges, joints[:, count:-1], drive if free else joints[:, -1])
 
     def _constraints(self, q: Array) -> tuple[Array, Array, Array]:
         """The Jacobian with a row for the crank angle, shape (m, q, q); the second derivatives in

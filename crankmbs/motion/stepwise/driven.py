@@ -49,7 +49,7 @@ class Prescribed:
         """
         state = commanded(standing.states[0], torque, share)
         if self._plan.folds_at(state.theta):
-            return standing._replace(ending=Ending.FOLD, where=state.theta)
+            return standing._replace(ending=Ending.FOLD, angle=state.theta)
         stretches, _ = monotone_stretches(replace(self._plan, until=until), self._law)
         for _, end in stretches:
             if end > state.time:
@@ -92,13 +92,13 @@ class Prescribed:
 
     def _sample(self, law: SpeedLaw, state: State) -> Samples:
         shares = state.mode.shares
-        own = {"fuel": np.array([shares])} if shares else {}
+        computed = {"fuel": np.array([shares])} if shares else {}
         time = np.array([state.time])
         theta, omega, alpha = law.at_time(time)
         if self._train.pushes:
             pushes = pushing(self._train, state.mode.loads)
-            own["applied_force"] = applied_forces(self._train, pushes, (time, theta, omega))
-        return Samples(time, theta, omega, alpha, np.zeros(1), own)
+            computed["applied_force"] = applied_forces(self._train, pushes, (time, theta, omega))
+        return Samples(time, theta, omega, alpha, np.zeros(1), computed)
 
 
 def _at(law: SpeedLaw, time: float) -> tuple[float, float, float]:

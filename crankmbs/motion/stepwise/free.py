@@ -89,7 +89,7 @@ class Free:
         ]
         for each in (answer, *others):
             if each.ending.value[0] < 0:
-                return standing._replace(ending=each.ending, where=each.state.theta)
+                return standing._replace(ending=each.ending, angle=each.state.theta)
         one, ending = answer.state, answer.ending
         ahead, faster = standing.ahead, standing.faster
         for other in (each.state for each in others):

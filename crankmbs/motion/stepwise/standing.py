@@ -22,14 +22,14 @@ class Standing(NamedTuple):
     ahead [rad], faster [rad/s] : the most by which the passes have differed so far, at equal time
     edges [rad] : of the crank angle's cells, where steps so far needed finer ones than at first
     ending : of the last step; COMPLETE where it came to its time. A broken one was not taken
-    where [rad] : crank angle at which it ended, or broke
+    angle [rad] : crank angle at which it ended, or broke
     """
 
     states: tuple[State, ...]
     ahead: float = 0.0
     faster: float = 0.0
     ending: Ending = Ending.COMPLETE
-    where: float = math.nan
+    angle: float = math.nan
     edges: tuple[float, ...] = ()
 
 
@@ -87,5 +87,5 @@ def said(standing: Standing, allowed: int = 0) -> tuple[int, str]:
     omega = standing.states[0].omega
     if standing.ending is Ending.COMPLETE:
         return 0, "reached the time that was asked for"
-    status, text = standing.ending.said(standing.where, omega, allowed=allowed)
+    status, text = standing.ending.said(standing.angle, omega, allowed=allowed)
     return (0 if standing.ending in AT_REST and omega == 0.0 else status), text
