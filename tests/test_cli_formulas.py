@@ -95,7 +95,7 @@ def test_a_formula_stands_in_every_table_and_file(mine, tmp_path, monkeypatch):
         r"crank speed by crank_speed_mean of mine.py: off by up to \S+ % of the p", words
     )
     (number,) = re.findall(r"^mean speed by mean_speed_start of mine.py .*$", text, re.MULTILINE)
-    assert "  335.103  " in number
+    assert " of mine.py [rpm]  3200.00  " in number
     assert "left out of 'the budget of crank_speed_mean of mine.py': crank speed: " in text
     rows = [r for r in lines_of(tmp_path / "out" / "comparison.csv") if "mine.py" in r["reference"]]
     assert [r["quantity"] for r in rows] == ["piston acceleration", "crank speed"]

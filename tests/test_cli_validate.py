@@ -14,6 +14,7 @@ import crankmbs.figures.compare as drawing
 from crankmbs import Run, budget, compare, load_scene, simulate
 from crankmbs.cli import app
 from crankmbs.compare import CAUSES, CLOSED_FORM, LECTURES, QUANTITIES, short_name
+from crankmbs.display import displayed
 from crankmbs.figures import budget_figure, comparison_figure
 
 pytestmark = pytest.mark.slow
@@ -117,7 +118,7 @@ def test_verbose_has_every_reference_and_the_largest_of_each_cause(diesel):
     for reference in (CLOSED_FORM, *LECTURES):
         assert f"{short_name(reference)} [%]" in text
     for quantity, about in QUANTITIES.items():
-        assert text.count(f"\n{quantity} [{about.units}] ") == 2
+        assert text.count(f"\n{quantity} [{displayed(about.units)[1]}] ") == 2
     words = " ".join(text.split())
     assert "lie at different angles and do not add" in words
     assert "side thrust: off by up to 16.3 % of the peak, at 658 degrees: the two-mass" in words

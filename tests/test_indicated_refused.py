@@ -124,12 +124,12 @@ MESSAGES = {
         "file a.csv: the rows span 359 degrees from -180 to 179, and a cycle has 720; export "
         "the whole cycle, gas exchange included"
     ),
-    "a cycle with rows missing": (
-        "file a.csv, line 723: the cycle that begins here has 670 rows, the others 720; leave "
-        "it out, or export every cycle at the same angles"
+    "rows missing in every cycle": (
+        "file a.csv, line 182: from 179 degrees the next row is 51 degrees on, where others are 1 "
+        "degrees apart: rows are missing; export the cycle with all of them"
     ),
     "cycles at other angles": (
-        "file a.csv, line 903: cycle 2 is not at the angles of the first, 950 degrees "
+        "file a.csv, line 1443: cycle 3 is not at the angles of the others, 0.4 degrees "
         "came; resample the cycles to the same angles, or check stroke"
     ),
     "rows missing at the peak": (

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 import crankmbs
 from crankmbs import InputError, Motion, Run, load_scene, simulate
+from crankmbs.compare import OBSERVABLES, short_name
 from crankmbs.digits import digits, error_digits
 from crankmbs.display import displayed
 from crankmbs.measures import measure
@@ -69,6 +70,34 @@ def test_a_comparison_and_a_budget_show_themselves_as_tables(short):
     text = shown(crankmbs.budget(short), pictures=0)
     assert "constant speed" in text
     assert "the error of the side thrust falls from" in text
+
+
+def test_a_comparison_has_a_dataframe_in_the_units_of_people(short):
+    def mean_speed(mean_omega):
+        return mean_omega + RPM
+
+    formulas = {"crank speed": lambda mean_omega: mean_omega, "mine": mean_speed}
+    found = crankmbs.compare(short, formulas)
+    table = found.to_dataframe()
+    assert table.index.is_unique
+    assert len(table) == len(found.rows) + len(found.numbers)
+    for row in found.rows:
+        scale, unit = displayed(OBSERVABLES[row.quantity].units)
+        line = table.loc[(f"{row.quantity} [{unit}]", short_name(row.reference))]
+        sizes = np.array([row.size.largest, row.size.rms])
+        assert line["run"] == row.peak / scale
+        assert line[["difference", "RMS difference"]].tolist() == (sizes / scale).tolist()
+        shares = line[["difference [%]", "RMS difference [%]"]].to_numpy()
+        np.testing.assert_allclose(shares, 100.0 * sizes / row.peak)
+        assert line["angle [deg]"] == math.degrees(row.size.angle)
+    line = table.loc[("mean speed [rpm]", "mine")]
+    assert line["difference"] == pytest.approx(1.0)
+    assert line["run"] == found.numbers[0].simulated.value / RPM
+    assert line["difference [%]"] == pytest.approx(100.0 / line["run"])
+    assert math.isnan(line["angle [deg]"])
+    text = shown(found, pictures=0)
+    for words in ("crank speed [rpm]", "piston displacement [mm]", "mean speed by mine [rpm]"):
+        assert words in text
 
 
 def test_what_is_printed_of_them_is_a_line(short):

@@ -15,6 +15,7 @@ from crankmbs.report.compared import (
     comparison_table,
     exact_words,
     left_out_lines,
+    number_table,
     worst_variable,
 )
 from crankmbs.scene.units import RPM
@@ -31,7 +32,7 @@ def validation_report(comparison: Comparison, split: Budget, *, verbose: bool) -
     parts = [
         _about(comparison),
         _user_formulas(comparison, split),
-        _numbers(comparison),
+        table(*number_table(comparison)) if comparison.numbers else "",
         _lectures(comparison, split),
         textwrap.fill(f"advice: {advice(split)}", _WIDTH) if split.splits else "",
         "\n".join(
@@ -142,21 +143,3 @@ def _rows(splits: Sequence[Split], beside: Comparison | None = None) -> list[str
     budget = budget_table(splits, beside)
     lines = [table(*budget)] if budget.rows else []
     return [*lines, *([textwrap.fill(exact, _WIDTH)] if (exact := exact_words(splits)) else [])]
-
-
-def _numbers(comparison: Comparison) -> str:
-    """The formulas that stand for one number of the run, beside it."""
-    if not comparison.numbers:
-        return ""
-    headings = ["single numbers", "formula", "run", "num. error", "formula minus run [%]"]
-    rows = [
-        [
-            f"{row.quantity} by {row.reference} [{row.units}]",
-            digits(row.value),
-            digits(row.simulated.value),
-            error_digits(row.simulated.error),
-            digits(row.percent, most=3),
-        ]
-        for row in comparison.numbers
-    ]
-    return table(headings, rows)

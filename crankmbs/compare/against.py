@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from crankmbs.compare.size import Size
 from crankmbs.errors import InputError
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 __all__ = ["Comparison", "Deviation", "compare"]
 
@@ -64,6 +67,20 @@ class Comparison:
             f"<Comparison over the {self.excerpt.window.kind}: {len(self.simulated)} quantities "
             f"with {', '.join(self.references)}>"
         )
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """A line for each quantity and reference, as a pandas table in the units of its index, rpm,
+        bar, mm, N, N m: the run's peak, the largest and the RMS difference from the run, both also
+        in percent of that peak, and the angle of the largest one as `Deviation` has it. Single
+        numbers have the run's value in place of the peak, no RMS and no angle.
+
+        >>> table = compare(simulate(load_scene("yi_diesel"))).to_dataframe()
+        >>> table.loc[("side thrust [N]", "untruncated lecture"), "difference [%]"].round(1).item()
+        17.7
+        """
+        from crankmbs.report.readings import comparison_frame
+
+        return comparison_frame(self)
 
     def _repr_html_(self) -> str:
         from crankmbs.report.html import comparison_html

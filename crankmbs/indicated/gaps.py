@@ -1,5 +1,5 @@
-"""Missing cells: a short gap is bridged between its neighbours, a cycle with a long one left out.
-What was done is said."""
+"""Missing cells: a short gap is bridged between its neighbours, a cycle with a long one, or without
+some of its rows, left out. What was done is said."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from crankmbs.errors import InputError
 from crankmbs.indicated.record import Channel, Record
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["without_gaps"]
+__all__ = ["bridged"]
 
 _LONGEST = 3  # rows that a straight line bridges
 
 
-def without_gaps(record: Record, channel: Channel) -> tuple[Array, bool, list[str]]:
-    """The cycles of a channel without missing cells; whether some were left out; what was done.
+def bridged(record: Record, channel: Channel) -> tuple[Array, list[str]]:
+    """The cycles of a channel, shape (cycles, n), NaN in those with a long gap; what was done.
 
     Raises
     ------
-    InputError : nothing is left
+    InputError : every cycle has a long gap
     """
     missing = np.isnan(channel.values)
     padded = np.pad(missing, [(0, 0), (0, _LONGEST)])
@@ -46,7 +46,7 @@ def without_gaps(record: Record, channel: Channel) -> tuple[Array, bool, list[st
     if len(out):
         listed = ", ".join(str(k + 1) for k in out[:10]) + (" ..." if len(out) > 10 else "")
         remarks.append(
-            f"{channel.name}: {len(out)} of {len(values)} cycles have more than {_LONGEST} missing "
-            f"cells in a row and are left out: {listed}"
+            f"{channel.name}: {len(out)} of {len(values)} cycles are left out for missing rows, or "
+            f"more than {_LONGEST} missing cells in a row: {listed}"
         )
-    return values[~torn], bool(len(out)), remarks
+    return values, remarks

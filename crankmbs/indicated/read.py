@@ -15,7 +15,7 @@ from crankmbs.indicated.cylinders import cylinder_of
 from crankmbs.indicated.dead_centre import DeadCentre, fired_dead_centre
 from crankmbs.indicated.findings import CylinderPressure, Indicated
 from crankmbs.indicated.firing import cut_cycles, firing_angle, lags, peak_or_given, places
-from crankmbs.indicated.gaps import without_gaps
+from crankmbs.indicated.gaps import bridged
 from crankmbs.indicated.options import Options
 from crankmbs.indicated.over_time import record_over_time, time_column
 from crankmbs.indicated.record import Channel, Record, record_of
@@ -96,7 +96,7 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
         else:
             found = _by_pressure(record, settings, scene, shape, first)
         cylinders = found.cylinders
-        table, words = table_of(record, cylinders, found.firsts, shape, settings.cycles)
+        table, words = table_of(record, cylinders, found.cut, shape, settings.cycles)
     speed = _speed(record, cylinders[0].firing, shape, sheet.name)
     remarks += found.remarks
     for cylinder in cylinders:
@@ -120,11 +120,11 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
 
 
 class _Found(NamedTuple):
-    """The cylinders, the row at which the cycles of each begin, as in `Cycles`; whether their
-    pressures are absolute; what was done."""
+    """The cylinders, and their cycles before these were referenced; whether their pressures are
+    absolute; what was done."""
 
     cylinders: tuple[CylinderPressure, ...]
-    firsts: list[int]
+    cut: list[Cycles]
     absolute: bool
     remarks: list[str]
 
@@ -158,7 +158,7 @@ def _cylinders(
         look = "warning: " if "though" in why else ""
         remarks.append(f"{look}cylinder {cycles.channel.cylinder}: {words} ({why})")
         cylinders.append(cylinder_of(cycles, added, shape, options, absolute))
-    return _Found(tuple(cylinders), [each.first for each in cut], absolute, remarks)
+    return _Found(tuple(cylinders), cut, absolute, remarks)
 
 
 def _by_pressure(
@@ -238,13 +238,12 @@ def _cut(
     """Each cylinder's cycles from gas exchange to gas exchange; what was done."""
     channels, remarks = _pressures(record)
     sign = -1.0 if options.invert else 1.0
-    filled, joined = [], []
+    filled = []
     for channel in channels:
-        values, torn, words = without_gaps(record, channel)
+        values, words = bridged(record, channel)
         filled.append(sign * values)
-        joined.append(record.consecutive and not torn)
         remarks += words
-    means = [np.mean(values, axis=0) for values in filled]
+    means = [np.nanmean(values, axis=0) for values in filled]
     for channel, mean in zip(channels, means, strict=True):
         _check_sign(channel, mean)
     if first is None:
@@ -260,22 +259,30 @@ def _cut(
     cut = []
     for k, (channel, values) in enumerate(zip(channels, filled, strict=True)):
         firing = first + nominal[k]
-        start, phi, cycles = cut_cycles(record.angle, values, record.period, firing, joined[k])
-        if len(cycles) < len(values):
+        for consecutive in (record.consecutive, False):
+            start, phi, cycles = cut_cycles(
+                record.angle, values, record.period, firing, consecutive
+            )
+            whole = ~np.any(np.isnan(cycles), axis=1)
+            if np.any(whole):
+                break
+        joined = len(cycles) < len(values)
+        if joined:
             remarks.append(
                 f"cylinder {channel.cylinder}: cut during the gas exchange, {len(values)} recorded "
-                f"cycles give {len(cycles)} whole ones"
+                f"cycles give {np.sum(whole)} whole ones"
             )
         cut.append(
             Cycles(
                 channel,
                 phi,
-                cycles,
+                cycles[whole],
                 record.period,
                 (firing + 180.0) % record.period - 180.0 if nominal[k] else firing,
                 measured[k],
                 _intake(record, channel.cylinder, start),
-                start if len(cycles) < len(values) else -start,
+                start,
+                bool(np.all(whole)) and (joined or start == 0),
             )
         )
     return cut, remarks

@@ -26,13 +26,15 @@ __all__ = ["Channel", "Record", "record_of"]
 
 _FEWEST = 90  # columns from which a row of rising numbers may be the crank angle
 _NEAR = 1e-6  # degrees: two angles of the axis closer than this are one
+_ALIKE = 1e-3  # degrees: a row this near an angle of the other cycles is at it
 _ASIDE = 3  # steps on either side of one
 _WIDEST = 4.5  # times as wide as those: more than the three rows that a gap of cells may have
 _STROKES = "stroke=4 with the whole cycle of 720 degrees", "stroke=2"
 
 
 class Channel(NamedTuple):
-    """One pressure: values of shape (cycles, n) [Pa], as they came but for the unit."""
+    """One pressure: values of shape (cycles, n) [Pa], as they came but for the unit; NaN where a
+    cell is missing, and in all of a cycle without some of its rows."""
 
     name: str
     kind: str
@@ -106,18 +108,23 @@ def _over_angle(
     sheet: Sheet, angle: Array, columns: Sequence[Column], stroke: int | None
 ) -> Record:
     """Rows over the crank angle, one cycle or one after the other."""
-    begins, length, period, remarks = _cycles_of(sheet, angle, stroke)
-    grid = angle[begins[0] : begins[0] + length]
-    closing = length > 2 and abs(grid[-1] - grid[0] - period) < _NEAR
-    count = length - closing
-    _check_steps(sheet, grid[:count], begins[0], period)
+    begins, grid, period, remarks = _cycles_of(sheet, angle, stroke)
+    whole = begins >= 0
+    closing = len(grid) > 2 and abs(grid[-1] - grid[0] - period) < _NEAR
+    count = len(grid) - closing
+    _check_steps(sheet, grid[:count], begins[whole][0], period)
     grouped: dict[tuple[str, int], list[Column]] = {}
     for column in columns:
         grouped.setdefault((column.kind, column.cylinder), []).append(column)
-    rows = np.add.outer(begins, np.arange(length))
+    rows = np.add.outer(begins, np.arange(len(grid)))
     channels, apart = [], 0.0
     for (kind, cylinder), alike in grouped.items():
-        values = np.concatenate([sheet.values[rows, each.place] * each.factor for each in alike])
+        values = np.concatenate(
+            [
+                np.where(whole[:, None], sheet.values[rows, each.place] * each.factor, np.nan)
+                for each in alike
+            ]
+        )
         if closing:
             apart = max(apart, np.nanmax(np.abs(values[:, -1] - values[:, 0])))
         first, *_, last = [each.name or f"column {each.place + 1}" for each in (alike[0], *alike)]
@@ -134,8 +141,9 @@ def _over_angle(
 
 def _cycles_of(
     sheet: Sheet, angle: Array, stroke: int | None
-) -> tuple[list[int], int, float, list[str]]:
-    """First rows of the cycles, their rows, the period [deg], and what is left out."""
+) -> tuple[Index, Array, float, list[str]]:
+    """First rows of the cycles, -1 of one without some of its rows; the angles of a whole one and
+    the period [deg]; and what is left out."""
     steps = np.diff(angle)
     if len(angle) > 2 and np.all(steps < 0.0):
         raise InputError(
@@ -148,10 +156,66 @@ def _cycles_of(
             f"{sheet.line(equal[0] + 1)}: the crank angle {angle[equal[0]]:g} comes twice, and "
             "it must rise; drop one of the rows"
         )
-    drops = np.flatnonzero(steps < 0.0) + 1
-    if len(drops):
-        return _by_drops(sheet, angle, drops, stroke)
-    return _by_period(sheet, angle, stroke)
+    if np.any(steps < 0.0):  # the angle begins again with every cycle
+        _check_drops(sheet, angle, np.flatnonzero(steps < 0.0) + 1)
+        begins, grid, remarks = _in_cycles(sheet, angle, np.cumsum(np.append(0, steps < 0.0)))
+        return begins, grid, _period_of(grid, stroke), remarks
+    period = 180.0 * stroke if stroke else 720.0
+    span = float(angle[-1] - angle[0])
+    if span <= period + 1.5 * float(np.median(steps)):
+        return np.array([0]), angle, _period_of(angle, stroke), []
+    number = ((angle - angle[0] + _ALIKE) // period).astype(np.intp)
+    begins, grid, remarks = _in_cycles(sheet, angle - period * number, number)
+    if stroke is None:
+        remarks.insert(0, f"{span:.6g} degrees in one piece are read as cycles of 720 degrees")
+    return begins, grid, period, remarks
+
+
+def _in_cycles(sheet: Sheet, angle: Array, number: Index) -> tuple[Index, Array, list[str]]:
+    """First rows of the cycles, -1 of one without some of its rows; the angles [deg] of a whole
+    one, which is as long as most rows have it; and what is left out.
+
+    angle : shape (n,) [deg], alike in every cycle; number : shape (n,), of the cycle, from 0
+
+    Raises
+    ------
+    InputError : a row at an angle that a whole cycle does not have
+    """
+    starts = np.searchsorted(number, np.arange(number[-1] + 1))
+    lengths = np.diff(starts, append=len(angle))
+    having = np.bincount(lengths) * np.arange(max(lengths) + 1)
+    length = int(np.flatnonzero(having == max(having))[-1])
+    grid = angle[starts[np.argmax(lengths == length)] :][:length]
+    begins: list[int] = []
+    remarks, lacking, last = [], [], len(starts) - 1
+    for k, (at, rows) in enumerate(zip(starts.tolist(), lengths.tolist(), strict=True)):
+        cycle, count = angle[at : at + rows], len(begins) + 1
+        place = np.minimum(np.searchsorted(grid, cycle - _ALIKE), length - 1)
+        wrong = np.abs(cycle - grid[place]) > _ALIKE
+        if np.any(wrong):
+            row = int(np.argmax(wrong))
+            raise InputError(
+                f"{sheet.line(at + row)}: cycle {count} is not at the angles of the others, "
+                f"{cycle[row]:g} degrees came; resample the cycles to the same angles, or check "
+                "stroke"
+            )
+        if k == 0 and place[0] == length - rows > 0:
+            remarks.append(f"the file begins within a cycle: {rows} rows of it are left out")
+        elif k == last and place[-1] == rows - 1 < length - 1:
+            if rows > 1:  # a single one closes the cycle before
+                remarks.append(f"the file ends within a cycle: {rows} rows of it are left out")
+        else:
+            begins.append(at if rows == length else -1)
+            if rows < length:
+                first = int(np.argmax(np.append(place, length) != np.arange(rows + 1)))
+                lacking.append(
+                    f"{length - rows} of the {length} of cycle {count}, from {grid[first]:g} "
+                    f"degrees ({sheet.line(at + first)})"
+                )
+    if lacking:
+        listed = "; ".join(lacking[:10]) + ("; ..." if len(lacking) > 10 else "")
+        remarks.append(f"rows are missing in {len(lacking)} of {len(begins)} cycles: {listed}")
+    return np.array(begins), grid, remarks
 
 
 def _check_steps(sheet: Sheet, grid: Array, first: int, period: float) -> None:
@@ -175,10 +239,8 @@ def _check_steps(sheet: Sheet, grid: Array, first: int, period: float) -> None:
         )
 
 
-def _by_drops(
-    sheet: Sheet, angle: Array, drops: Index, stroke: int | None
-) -> tuple[list[int], int, float, list[str]]:
-    """The angle begins again with every cycle."""
+def _check_drops(sheet: Sheet, angle: Array, drops: Index) -> None:
+    """Refuse an angle that goes back by less than a cycle."""
     low, high = float(np.min(angle)), float(np.max(angle))
     short = [d for d in drops if angle[d - 1] - angle[d] < 0.4 * (high - low)]
     if short:
@@ -187,59 +249,6 @@ def _by_drops(
             f"{sheet.line(d)}: the crank angle goes from {angle[d - 1]:g} back to {angle[d]:g} "
             "degrees, and it must rise to the end of the cycle; export the rows in order"
         )
-    edges = [0, *drops.tolist(), len(angle)]
-    lengths = np.diff(edges)
-    length = int(np.bincount(lengths).argmax())
-    begins, remarks = [], []
-    for k, rows in enumerate(lengths):
-        if rows == length:
-            begins.append(edges[k])
-        elif rows < length and k in (0, len(lengths) - 1):
-            place = "ends" if k else "begins"
-            remarks.append(f"the file {place} within a cycle: {rows} rows of it are left out")
-        else:
-            raise InputError(
-                f"{sheet.line(edges[k])}: the cycle that begins here has {rows} rows, the others "
-                f"{length}; leave it out, or export every cycle at the same angles"
-            )
-    _check_grids(sheet, angle, begins, length, 0.0)
-    return begins, length, _period_of(angle[begins[0] :][:length], stroke), remarks
-
-
-def _by_period(
-    sheet: Sheet, angle: Array, stroke: int | None
-) -> tuple[list[int], int, float, list[str]]:
-    """The angle rises from the first row to the last, over one cycle or several."""
-    period = 180.0 * stroke if stroke else 720.0
-    span = float(angle[-1] - angle[0])
-    if span <= period + 1.5 * np.max(np.diff(angle), initial=0.0):
-        return [0], len(angle), _period_of(angle, stroke), []
-    remarks = []
-    if stroke is None:
-        remarks.append(f"{span:.6g} degrees in one piece are read as cycles of 720 degrees")
-    length = int(np.searchsorted(angle, angle[0] + period - _NEAR))
-    begins = list(range(0, len(angle) - length + 1, length))
-    _check_grids(sheet, angle, begins, length, period)
-    left = len(angle) - begins[-1] - length
-    if left > 1 or (left and abs(span - len(begins) * period) > _NEAR):
-        remarks.append(f"the file ends within a cycle: {left} rows of it are left out")
-    return begins, length, period, remarks
-
-
-def _check_grids(
-    sheet: Sheet, angle: Array, begins: Sequence[int], length: int, advance: float
-) -> None:
-    """Refuse cycles at other angles than the first one's; advance [deg] from each to the next."""
-    first = angle[begins[0] : begins[0] + length]
-    for number, k in enumerate(begins):
-        wrong = np.abs(angle[k : k + length] - first - number * advance) > 1e-3
-        if np.any(wrong):
-            row = k + int(np.argmax(wrong))
-            raise InputError(
-                f"{sheet.line(row)}: cycle {number + 1} is not at the angles of the first, "
-                f"{angle[row]:g} degrees came; resample the cycles to the same angles, or check "
-                "stroke"
-            )
 
 
 def _period_of(grid: Array, known: int | None) -> float:

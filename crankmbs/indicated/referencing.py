@@ -39,8 +39,9 @@ class Cycles(NamedTuple):
     phi : shape (n,) [deg] from the firing dead centre; pressure : shape (cycles, n) [Pa]
     period [deg]; firing : the file's angle [deg] of the firing dead centre; lag [deg] : measured,
         behind the first cylinder; intake : mean cycle [Pa] of the intake, over phi
-    first : how many rows behind the file's first they begin; negative: so many rows were moved
-        behind the others of the same cycle
+    first : how many rows behind the file's first they begin
+    follow : whether each begins where the one before ends; else some between them are left out, or
+        the rows before `first` are moved behind the others of the same cycle
     """
 
     channel: Channel
@@ -51,6 +52,7 @@ class Cycles(NamedTuple):
     lag: float
     intake: Array | None
     first: int
+    follow: bool
 
     @property
     def at_inlet(self) -> NDArray[np.bool_]:

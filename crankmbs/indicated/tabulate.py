@@ -14,6 +14,7 @@ import numpy as np
 from crankmbs.errors import InputError
 from crankmbs.indicated.findings import CylinderPressure
 from crankmbs.indicated.record import Record
+from crankmbs.indicated.referencing import Cycles
 from crankmbs.indicated.shape import Shape
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.tables import CylinderTable, Table
@@ -24,14 +25,13 @@ __all__ = ["table_of"]
 def table_of(
     record: Record,
     cylinders: Sequence[CylinderPressure],
-    firsts: Sequence[int],
+    cut: Sequence[Cycles],
     shape: Shape | None,
     cycles: tuple[int, int | None] | None,
 ) -> tuple[Table | CylinderTable, str]:
     """The table [rad, Pa] over the cycle angle of the first cylinder, and what it holds.
 
-    firsts : how many rows behind the file's first the cycles of each cylinder begin; negative: so
-        many rows were moved behind the others of the same cycle
+    cut : the cycles of each cylinder as they were cut from the record
 
     Raises
     ------
@@ -47,8 +47,10 @@ def table_of(
             f"the true firing dead centre is at a cycle angle of {zero + top:.5g} degrees, as "
             "the offset asks for"
         )
+    firsts = [each.first for each in cut]
     if cycles is None:
         return _mean(cylinders, firsts, angle, period), f"the table holds the mean cycle; {words}"
+    _check_follow(cut)
     sequence = _sequence(cylinders, firsts)
     whole = sequence.shape[1]
     first, last = cycles[0], cycles[1] or whole
@@ -69,34 +71,35 @@ def _mean(
 ) -> Table | CylinderTable:
     """Mean cycles, in the first one's order of rows."""
     rows = [
-        np.roll(each.mean, abs(first) - abs(firsts[0]))
-        for each, first in zip(cylinders, firsts, strict=True)
+        np.roll(each.mean, first - firsts[0]) for each, first in zip(cylinders, firsts, strict=True)
     ]
     within = np.mod(angle + 1e-9, period) - 1e-9
     order = np.argsort(within)
     return _tabulated(within[order], np.array(rows)[:, order])
 
 
+def _check_follow(cut: Sequence[Cycles]) -> None:
+    """Refuse cycles of several cylinders that do not follow one another."""
+    apart = [each.channel.cylinder for each in cut if not each.follow]
+    if apart and len(cut) > 1:
+        raise InputError(
+            f"the cycles of cylinder {apart[0]} do not follow one another, so they cannot "
+            'stand beside those of others; give cycles="mean", or one column'
+        )
+
+
 def _sequence(cylinders: Sequence[CylinderPressure], firsts: Sequence[int]) -> Array:
     """Whole cycles that all cylinders have, as the first one counts them; shape (cylinders,
     cycles, n)."""
-    moved = [each.number for each, first in zip(cylinders, firsts, strict=True) if first < 0]
-    counts = {len(each.pressure) for each in cylinders}
-    if moved and (len(cylinders) > 1 or len(counts) > 1):
-        raise InputError(
-            f"the cycles of cylinder {moved[0]} do not follow one another, so they cannot "
-            'stand beside those of others; give cycles="mean", or one column'
-        )
     n = len(cylinders[0].angle)
     flat = [each.pressure.reshape(-1) for each in cylinders]
-    starts = [abs(first) for first in firsts]
-    begin = starts[0] + n * max(0, math.ceil((max(starts) - starts[0]) / n))
-    whole = (min(start + len(each) for start, each in zip(starts, flat, strict=True)) - begin) // n
+    begin = firsts[0] + n * max(0, math.ceil((max(firsts) - firsts[0]) / n))
+    whole = (min(first + len(each) for first, each in zip(firsts, flat, strict=True)) - begin) // n
     if whole < 1:
         raise InputError('no cycle is whole in every cylinder; give cycles="mean", or one column')
     parts = [
-        each[begin - start : begin - start + whole * n]
-        for each, start in zip(flat, starts, strict=True)
+        each[begin - first : begin - first + whole * n]
+        for each, first in zip(flat, firsts, strict=True)
     ]
     return np.array(parts).reshape(len(cylinders), whole, n)
 

@@ -18,10 +18,11 @@ from crankmbs.compare import (
     percent,
     short_name,
 )
-from crankmbs.digits import digits
+from crankmbs.digits import digits, error_digits
+from crankmbs.display import displayed
 from crankmbs.mechanics.peaks import peak, relative_errors
 from crankmbs.mechanics.variables import EVERY
-from crankmbs.report.rows import Table
+from crankmbs.report.rows import Table, labelled
 from crankmbs.result import Result
 
 __all__ = [
@@ -30,6 +31,7 @@ __all__ = [
     "comparison_table",
     "exact_words",
     "left_out_lines",
+    "number_table",
     "worst_variable",
 ]
 
@@ -64,8 +66,7 @@ def budget_table(splits: Sequence[Split], comparison: Comparison | None = None) 
     rows = []
     for split, each in zip(shown, parts, strict=True):
         row = [
-            _with_unit(split.quantity),
-            digits(split.peak, most=4),
+            *_with_peak(split.quantity, split.peak),
             _signed(sum(each.values())),
             f"{math.degrees(split.total.size.angle):.0f}",
             *(_signed(each.get(name, 0.0)) for name in causes),
@@ -118,9 +119,27 @@ def comparison_table(comparison: Comparison) -> Table:
             for name in references
         )
         angle = f"{math.degrees(last.size.angle):.0f}"
-        rows.append([_with_unit(quantity), digits(peak, most=4), *shares, angle])
+        rows.append([*_with_peak(quantity, peak), *shares, angle])
     names = map(short_name, references)
     headings = ["quantity", "peak", *(f"{name} [%]" for name in names), "at [deg]"]
+    return Table(headings, rows)
+
+
+def number_table(comparison: Comparison) -> Table:
+    """The formulas that stand for one number of the run, beside it."""
+    rows = []
+    for row in comparison.numbers:
+        scale = displayed(row.units)[0]
+        rows.append(
+            [
+                labelled(f"{row.quantity} by {row.reference}", None, 1, row.units),
+                digits(row.value / scale),
+                digits(row.simulated.value / scale),
+                error_digits(row.simulated.error / scale),
+                digits(row.percent, most=3),
+            ]
+        )
+    headings = ["single numbers", "formula", "run", "num. error", "formula minus run [%]"]
     return Table(headings, rows)
 
 
@@ -150,8 +169,10 @@ def _right(split: Split) -> bool:
     return split.share(split.total) < _LEAST
 
 
-def _with_unit(quantity: str) -> str:
-    return f"{quantity} [{OBSERVABLES[quantity].units}]"
+def _with_peak(quantity: str, peak: float) -> list[str]:
+    """A quantity with its unit, and the peak in it."""
+    units = OBSERVABLES[quantity].units
+    return [labelled(quantity, None, 1, units), digits(peak / displayed(units)[0], most=4)]
 
 
 def _beside(comparison: Comparison, quantity: str) -> str:

@@ -14,7 +14,13 @@ from crankmbs.errors import CrankmbsError
 from crankmbs.figures import last_view, machine_figure, png, speed_figure
 from crankmbs.measures import Measures, measure
 from crankmbs.measures.plausible import warnings
-from crankmbs.report.compared import advice, budget_table, comparison_table, left_out_lines
+from crankmbs.report.compared import (
+    advice,
+    budget_table,
+    comparison_table,
+    left_out_lines,
+    number_table,
+)
 from crankmbs.report.machine import machine_rows
 from crankmbs.report.readings import passed_at, reading_tables
 from crankmbs.report.rows import cycle_remark, measure_tables, not_periodic, tables, unsteady
@@ -99,14 +105,16 @@ def scene_html(scene: Scene) -> str:
 
 
 def comparison_html(comparison: Comparison) -> str:
-    """The largest difference of each reference from the run, in percent of its peak.
+    """The largest difference of each reference from the run, in percent of its peak; the single
+    numbers of formulas beside the run's.
 
     >>> comparison_html(compare(simulate(load_scene("propeller")))).count("<table>")
     1
     """
     text = "largest difference from the run, in % of its peak; the angle is the last reference's"
     lines = [Markup("<p>{}</p>").format(line) for line in left_out_lines(comparison.left_out)]
-    parts = [_table(*comparison_table(comparison)), *lines]
+    numbers = [_table(*number_table(comparison))] if comparison.numbers else []
+    parts = [_table(*comparison_table(comparison)), *numbers, *lines]
     return _whole(comparison.excerpt.result.scene, f"{_stretch(comparison.excerpt)}: {text}", parts)
 
 

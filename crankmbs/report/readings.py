@@ -1,4 +1,5 @@
-"""Every quantity at one crank angle as tables of words, and numbers of a run as pandas tables."""
+"""Every quantity at one crank angle as tables of words; numbers of a run, and how formulas differ
+from it, as pandas tables."""
 
 from __future__ import annotations
 
@@ -6,7 +7,7 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
-from crankmbs.compare import AtAngle, Reading
+from crankmbs.compare import OBSERVABLES, AtAngle, Comparison, Reading, percent, short_name
 from crankmbs.digits import digits, error_digits
 from crankmbs.display import displayed
 from crankmbs.measures import Estimate, Measures
@@ -16,7 +17,7 @@ from crankmbs.report.rows import Table, labelled
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["measures_frame", "passed_at", "reading_tables", "readings_frame"]
+__all__ = ["comparison_frame", "measures_frame", "passed_at", "reading_tables", "readings_frame"]
 
 Row = tuple[str, str, Estimate, Mapping[str, str | float]]
 """A label, SI units, the number with its error, and further columns."""
@@ -74,6 +75,35 @@ def measures_frame(measures: Measures) -> pd.DataFrame:
             }
             rows.append((labelled(words, k + 1, len(estimates), units), units, estimate, degrees))
     return _frame(rows)
+
+
+def comparison_frame(comparison: Comparison) -> pd.DataFrame:
+    """Every reference's largest and RMS difference from the run, in the units that people read and
+    in percent of the run's peak, and where it is largest; then the single numbers."""
+    import pandas as pd
+
+    lines: dict[tuple[str, str], dict[str, float]] = {}
+    for row in sorted(
+        comparison.rows, key=lambda row: list(comparison.simulated).index(row.quantity)
+    ):
+        units = OBSERVABLES[row.quantity].units
+        scale, (largest, rms, angle, _) = displayed(units)[0], row.size
+        sizes = {"difference": largest, "RMS difference": rms}
+        lines[labelled(row.quantity, None, 1, units), short_name(row.reference)] = {
+            "run": row.peak / scale,
+            **{name: size / scale for name, size in sizes.items()},
+            **{f"{name} [%]": percent(size, row.peak) for name, size in sizes.items()},
+            "angle [deg]": math.degrees(angle),
+        }
+    for number in comparison.numbers:
+        scale = displayed(number.units)[0]
+        lines[labelled(number.quantity, None, 1, number.units), number.reference] = {
+            "run": number.simulated.value / scale,
+            "difference": abs(number.error) / scale,
+            "difference [%]": abs(number.percent),
+        }
+    frame = pd.DataFrame.from_dict(lines, orient="index")
+    return frame.rename_axis(index=["quantity", "reference"])
 
 
 def _frame(rows: Iterable[Row]) -> pd.DataFrame:
