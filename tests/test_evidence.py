@@ -1,6 +1,8 @@
 """What is committed of claims and mutants is whole, and was measured for them as they are."""
 
 from dataclasses import replace
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -115,3 +117,20 @@ def test_every_check_is_of_one_kind_of_evidence():
 def test_a_check_of_no_kind_is_refused():
     with pytest.raises(ValueError, match=r"new\.check is of 0 kinds"):
         kind_of(replace(CASES["s2_brix"], check="new.check"))
+
+
+RUN_BY_NAME = [
+    ".".join(path.relative_to(TESTS.parent).with_suffix("").parts).removesuffix(".__main__")
+    for path in sorted((TESTS.parent / "validation").rglob("*.py"))
+    if '__name__ == "__main__"' in path.read_text(encoding="utf-8")
+]
+
+
+@pytest.mark.parametrize("name", RUN_BY_NAME)
+def test_what_is_run_by_name_prints_its_help_and_computes_nothing(name, capsys):
+    package = find_spec(name).submodule_search_locations
+    module = import_module(f"{name}.__main__" if package else name)
+    with pytest.raises(SystemExit) as ended:
+        module.main(["--help"])
+    assert not ended.value.code
+    assert capsys.readouterr().out.startswith(f"usage: python -m {name} ")

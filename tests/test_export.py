@@ -8,6 +8,8 @@ import re
 import runpy
 import subprocess
 import sys
+from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,7 +21,9 @@ from crankmbs import Constant, Force, InputError, Load, OutputError, export, loa
 from crankmbs.export.exudyn import exudyn_script
 from crankmbs.motion.multibody.mechanism import build, mechanism_of
 from crankmbs.scene.forces import ConstantForce, Damper, ForceAngleTable, Spring, TravelTable
+from crankmbs.scene.read import parse_scene
 from crankmbs.scene.tables import Table
+from crankmbs.scene.template import template
 
 TURN = 2.0 * math.pi
 TORQUE_DRIVEN = load_scene("torque_driven").with_(run__until="0.3 s")
@@ -47,6 +51,19 @@ SCENES = {
             ),
         ),
     ),
+    "template": parse_scene(template("mine"), Path("mine.toml")).with_(run__until="2 cycles"),
+    "v_twin": load_scene("v_twin").with_(run__until="1 cycle"),
+    "grega_lecture": load_scene("grega_lecture").with_(run__until="1 rev"),
+    "jumps at dead centres": load_scene("validation/scenes/hard_pressure_jumps.toml"),
+    "jumps in mid-stroke": load_scene("torque_driven").with_(
+        run__until="0.2 s",
+        start__speed=-10.0,
+        force=(
+            ForceAngleTable(
+                file=Table((0.0, 1.2, 1.2, 4.0, 4.0, TURN), (0.0, 0.0, 200.0, 200.0, 0.0, 0.0))
+            ),
+        ),
+    ),
     "banks": load_scene("torque_driven").with_(
         run__until="0.1 s",
         layout=crankmbs.Layout(
@@ -59,9 +76,29 @@ SCENES = {
 }
 
 
+def made(scene):
+    """The names of a script, which has not run."""
+    names = {"__name__": "script"}
+    exec(exudyn_script(scene, "mine"), names)
+    return names
+
+
 def script(scene, folder):
     (file,) = export(scene, "exudyn", folder / "mine.py")
     return runpy.run_path(str(file))["run"]()
+
+
+def from_jumps(scene, theta):
+    """How far from the nearest jump of a force crank angles [rad] are."""
+    gas = [each.pressure for each in (scene.gas,) if each and isinstance(each.pressure, Table)]
+    forces = [force.file for force in scene.force if isinstance(force, ForceAngleTable)]
+    jumps = [x for one in (*gas, *forces) for x, after in pairwise(one.x) if x == after]
+    if scene.gas and scene.gas.indicator:
+        jumps += list(np.arange(4) * math.pi)  # no offset: the dead centres
+    angles = [jump - each.phase for jump in jumps for each in scene.cylinders]
+    half = TURN if scene.gas else 0.5 * TURN
+    away = (np.subtract.outer(theta, angles) + half) % (2.0 * half) - half
+    return np.abs(away).min(axis=1, initial=math.inf)
 
 
 def of_cylinder(rows, heading):
@@ -82,17 +119,39 @@ def test_the_script_gives_the_motion_within_the_error_that_it_states(name, tmp_p
     (file,) = export(SCENES[name], "exudyn", tmp_path / "mine.py")
     made = runpy.run_path(str(file))
     found, stated = made["run"](), stated_in(file.read_text(encoding="utf-8"))
-    result = simulate(SCENES[name].with_(run__every=f"{made['STEP']!r} s"))
+    other = "minimal" if SCENES[name].start else "auto"  # not that which the head is held against
+    result = simulate(SCENES[name].with_(run__every=f"{made['STEP']!r} s"), formulation=other)
     rows = {name: one.values[1:] for name, one in result.data.variables.items()}
+    count = (
+        min(len(rows["time"]), len(found["time [s]"])) - 1
+    )  # the last lies at the end of the run
+    clear = from_jumps(SCENES[name], rows["crank_angle"][:count]) > stated.get("crank_angle", 0.0)
     assert len(stated) >= 5
+    errors = dict.fromkeys(stated, 0.0)
     for heading, values in found.items():
         true = of_cylinder(rows, heading)
-        count = min(len(true), len(values)) - 1  # the last lies at the end of the run
-        missed = np.max(np.abs(values[:count] - true[:count]))
+        missed = np.max(np.abs(values[:count] - true[:count])[clear])
         assert missed <= 1e-3 * np.max(np.abs(true)) + 1e-2, heading
-        least = stated.get(heading.split("[")[0].split(" ")[0])
-        if least is not None:
-            assert 0.02 * least < missed < least, heading
+        of = heading.split("[")[0].split(" ")[0]
+        if of in errors:
+            errors[of] = max(errors[of], missed)
+    for of, error in errors.items():
+        assert 0.5 * stated[of] < error < stated[of], of
+
+
+def test_the_head_says_that_steps_pass_over_jumps():
+    said = "Forces jump at some crank angles, and the steps pass over the jumps"
+    saying = {name for name in SCENES if said in exudyn_script(SCENES[name], "mine")}
+    assert saying == {"template", "v_twin", "jumps at dead centres", "jumps in mid-stroke"}
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_start_on_a_jump_has_the_forces_of_the_side_to_which_the_crank_moves(sense):
+    at = {"start__angle": 1.2, "start__speed": 10.0 * sense}  # where the force of the table sets in
+    scene = SCENES["jumps in mid-stroke"].with_(**at)
+    beside = simulate(scene.with_(start__angle=1.2 + 1e-6 * sense))
+    began = made(scene)["START_ACCELERATION"][2]
+    assert began == pytest.approx(beside.sampled("crank_acceleration")[0], abs=1.0)
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -188,11 +247,6 @@ def test_a_hostile_title_stays_a_comment(tmp_path):
         (
             TORQUE_DRIVEN.with_(force=(ConstantForce(force=1.0, until=0.1),)),
             "the window of force[1]; leave out when it sets in",
-        ),
-        (load_scene("v_twin"), "gas.indicator: its pressure jumps where valves open"),
-        (
-            load_scene("validation/scenes/hard_pressure_jumps.toml"),
-            "it jumps (two rows at one angle), where a run must be cut",
         ),
         (
             TORQUE_DRIVEN.with_(torque=(), start__angle=0.0),

@@ -7,6 +7,9 @@ combustion adds to that, scattered: p = motored + q (fired - motored), q = 1 + 0
 
 from __future__ import annotations
 
+import argparse
+import sys
+
 import numpy as np
 
 from crankmbs.scene.shipped import models_folder
@@ -44,5 +47,13 @@ def text() -> str:
     return _HEAD + "".join(rows)
 
 
-if __name__ == "__main__":
+def main(arguments: list[str] | None = None) -> int:
+    """Write the file."""
+    parser = argparse.ArgumentParser(prog="python -m validation.indicated", description=__doc__)
+    parser.parse_args(arguments)
     _FILE.write_text(text(), encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -4,6 +4,7 @@ The settled motion of `propeller`, its flywheel from heavy to light and its rod 
 at the same stroke and with the gas carried over the volume.
 """
 
+import argparse
 import sys
 from pathlib import Path
 
@@ -34,8 +35,10 @@ _QUANTITIES = (
 )
 
 
-def main() -> int:
+def main(arguments: list[str] | None = None) -> int:
     """Compute and draw the map."""
+    parser = argparse.ArgumentParser(prog="python -m validation.lecture_map", description=__doc__)
+    parser.parse_args(arguments)
     scene = load_scene("propeller").with_(run__until="settled")
     vary = {"rod_ratio": "0.15..0.45:25", "crank.inertia": "0.02..2 kg m^2:49:log"}
     found = sweep(scene, vary).sel(lecture=_LECTURE)

@@ -10,6 +10,7 @@ beside it.
 
 from __future__ import annotations
 
+import argparse
 import os
 import shutil
 import sys
@@ -63,8 +64,10 @@ _DRAWN = """async ([name, turns]) => {
 _TRACED = ["devtools.timeline", "blink.user_timing", "toplevel"]
 
 
-def main() -> int:
+def main(arguments: list[str] | None = None) -> int:
     """Print the medians in milliseconds, by scene and knob."""
+    parser = argparse.ArgumentParser(prog="python -m validation.page_speed", description=__doc__)
+    parser.parse_args(arguments)
     path = shutil.which("chromium")
     if path is None:
         print("error: chromium is missing: apt-get install chromium", file=sys.stderr)

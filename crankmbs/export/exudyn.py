@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from crankmbs.digits import error_digits
 from crankmbs.errors import InputError
 from crankmbs.mechanics.geometry import top_position
+from crankmbs.mechanics.knots import repeat
 from crankmbs.mechanics.pressure import PeriodicPressure
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.motion.multibody.beside import initial
@@ -56,8 +58,8 @@ import numpy as np
 SPECTRAL_RADIUS = 0.9
 """
 _STEPS_PER_TURN = 1000  # of the fastest speed
-_ORDERLY = 3.0  # of order 2 differences fall by 4 at a halving; where they fall less it is rounding
-_SAFE = 1.5  # the largest difference of the rows is not quite that of the motion
+_FEWEST_STEPS = 4
+_MOST_ROWS = 100_000  # that are held against the motion
 _STATED = {  # variable -> its words in the head of the script; a prescribed motion errs in forces
     "crank_angle": "crank angle [rad]",
     "crank_speed": "crank speed [rad/s]",
@@ -68,19 +70,24 @@ _STATED = {  # variable -> its words in the head of the script; a prescribed mot
     "side_force": "side force [N]",
 }
 
+_JUMPS = (
+    "# Forces jump at some crank angles, and the steps pass over the jumps: half the step may",
+    "# leave more than a quarter of these errors. A row nearer to a jump than the crank angle errs",
+    "# may have the forces of its other side.",
+)
+
 
 def exudyn_script(scene: Scene, stem: str) -> str:
     """A script that builds the bodies, joints and loads of a scene and runs them in exudyn.
 
     Mechanism, system and settings are those of `crankmbs.motion.multibody`, quoted. It runs at 1000
-    steps a turn, not extrapolated; how far that is from the motion it says in its head. Run, it
-    writes STEM.csv.
+    steps a turn, not extrapolated, over jumps of the forces as over all else; how far that is from
+    the motion, as the run of the scene has it, it says in its head. Run, it writes STEM_exudyn.csv.
 
     Raises
     ------
     InputError : fuel, friction, torques by tables, forces over the travel or over time, windows,
-        functions, a speed that changes, a settled motion, forces that jump, a crank that nothing
-        moves; says which
+        functions, a speed that changes, a settled motion, a crank that nothing moves; says which
 
     >>> "def run():" in exudyn_script(load_scene("torque_driven"), "mine")
     True
@@ -89,18 +96,6 @@ def exudyn_script(scene: Scene, stem: str) -> str:
     if refused:
         raise InputError(f"a script for exudyn cannot express {refused}")
     train = crank_train(scene)
-    if Forces(train).jumps:
-        if scene.gas is not None and scene.gas.indicator is not None:
-            raise InputError(
-                "a script for exudyn cannot express gas.indicator: its pressure jumps where valves "
-                "open, and a run must be cut there and begun anew; give the pressure as a table "
-                "without two rows at one angle"
-            )
-        raise InputError(
-            "a script for exudyn cannot express the gas pressure or a force over the angle: it "
-            "jumps (two rows at one angle), where a run must be cut and begun anew; give rows "
-            "without jumps"
-        )
     result = simulate(scene)
     if result.status != 0:
         raise InputError(
@@ -109,9 +104,11 @@ def exudyn_script(scene: Scene, stem: str) -> str:
         )
     end = float(result.sampled("time")[-1])
     fastest = float(np.max(np.abs(result.sampled("crank_speed"))))
-    steps = 4 * math.ceil(end * fastest / (2.0 * math.pi) * _STEPS_PER_TURN / 4.0)
-    texts = [_text(train, stem, end, steps // part) for part in (4, 2, 1)]
-    return _head(scene, end / steps, _errors(*map(_run, texts))) + texts[-1]
+    steps = max(math.ceil(end * fastest / (2.0 * math.pi) * _STEPS_PER_TURN), _FEWEST_STEPS)
+    text = _text(train, stem, end, steps)
+    jumps = Forces(train).jumps if scene.start else np.empty(0)  # prescribed angles do not err
+    errors = _errors(train, _run(text), jumps)
+    return _head(scene, end / steps, errors, jumps=len(jumps) > 0) + text
 
 
 def _text(train: CrankTrain, stem: str, end: float, steps: int) -> str:
@@ -142,23 +139,33 @@ def _run(text: str) -> dict[str, Array]:
     return columns
 
 
-def _errors(
-    coarsest: dict[str, Array], coarse: dict[str, Array], fine: dict[str, Array]
-) -> dict[str, float]:
-    """By variable the largest error of the finest run: where order 2 is seen a third of what the
-    nearer run differs by, else all of it; of the bearing under several cylinders at least that of
-    their crank pins, as their differences may cancel where their errors do not."""
+def _errors(train: CrankTrain, columns: dict[str, Array], jumps: Array) -> dict[str, float]:
+    """By variable what the rows of a script err by at most: their largest difference from the run
+    of the scene, and its error; of rows that lie on the same side of all jumps [rad] in both."""
+    time, *_ = columns.values()
+    every = math.ceil(len(time) / _MOST_ROWS)
+    step = float(time[-1]) / len(time)
+    result = simulate(train.scene.with_(run__every=f"{every * step!r} s"))
+    count = min(len(time) // every, len(result.sampled("time")) - 1) - 1  # not that at the end
+
+    def both(heading: str) -> tuple[Array, Array]:
+        name, _, number = heading.split(" [")[0].partition(" ")
+        values = result.sampled(name)[1 : count + 1]
+        return columns[heading][every - 1 :: every][:count], (
+            values[:, int(number) - 1] if number else values
+        )
+
+    passed, true = both("crank_angle [rad]")
+    around = repeat(jumps, train.period, true.min() - 1.0, true.max() + 1.0)
+    sides = (np.searchsorted(around, angle + NEAR) for angle in (passed, true))
+    same = np.equal(*sides)
     errors: dict[str, float] = {}
-    for heading, values in fine.items():
-        change = float(np.max(np.abs(values[1::2] - coarse[heading])))
-        before = float(np.max(np.abs(coarse[heading][1::2] - coarsest[heading])))
-        error = _SAFE * change / (3.0 if before > _ORDERLY * change else 1.0)
+    for heading in list(columns)[1:]:
         name = heading.split(" [")[0].split(" ")[0]
+        ours, true = both(heading)
+        difference = float(np.max(np.abs(ours - true)[same], initial=0.0))
+        error = difference + result.data[name].attrs["error_estimate"]
         errors[name] = max(errors.get(name, 0.0), error)
-    if any(heading.startswith("side_force 2") for heading in fine):
-        pins = max(errors["crank_pin_force_x"], errors["crank_pin_force_y"])
-        for name in ("main_bearing_force_x", "main_bearing_force_y"):
-            errors[name] = max(errors[name], pins)
     return errors
 
 
@@ -198,7 +205,7 @@ def _refused_load(scene: Scene) -> str:
     return ""
 
 
-def _head(scene: Scene, step: float, errors: dict[str, float]) -> str:
+def _head(scene: Scene, step: float, errors: dict[str, float], *, jumps: bool) -> str:
     stated = _STATED if scene.motion is None else dict(list(_STATED.items())[2:])
     title = " ".join(scene.title.split()) or "a scene"
     lines = [
@@ -208,8 +215,9 @@ def _head(scene: Scene, step: float, errors: dict[str, float]) -> str:
         "# Planar: X along the cylinder from the crank axis to the head, Y is X turned by +90",
         "# degrees. Units are SI. It needs numpy and exudyn.",
         "#",
-        f"# At this step ({step:.6g} s) it differs from the motion by at most about",
-        *(f"#     {errors[name]:<10.1e} {words}" for name, words in stated.items()),
+        f"# At this step ({step:.6g} s) it differs from the motion by at most",
+        *(f"#     {error_digits(errors[name]):<10} {words}" for name, words in stated.items()),
+        *(_JUMPS if jumps else ()),
         "",
     ]
     return "\n".join(lines)

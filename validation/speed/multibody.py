@@ -7,6 +7,7 @@ settings of a script that is written by hand for the same bodies, on four machin
 
 from __future__ import annotations
 
+import argparse
 import csv
 import sys
 from dataclasses import asdict, dataclass
@@ -118,8 +119,12 @@ def drawn(points: list[Point], machine: tuple[str, ...] = ()) -> Figure:
     return figure
 
 
-def main() -> int:
+def main(arguments: list[str] | None = None) -> int:
     """Measure, write and draw."""
+    parser = argparse.ArgumentParser(
+        prog="python -m validation.speed.multibody", description=__doc__
+    )
+    parser.parse_args(arguments)
     points = []
     for name, changes in SCENES.items():
         points += measured(name, load_scene(name).with_(**changes))

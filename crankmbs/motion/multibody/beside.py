@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from contextlib import closing
 from dataclasses import replace
@@ -14,10 +15,11 @@ from crankmbs.mechanics.speed import speed_law
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import Phases
 from crankmbs.motion.base import State
-from crankmbs.motion.mode import Mode
+from crankmbs.motion.mode import Mode, begun
 from crankmbs.motion.multibody.answer import Answers
-from crankmbs.motion.multibody.forces import EVERYWHERE, Bounds
+from crankmbs.motion.multibody.forces import EVERYWHERE, Limits
 from crankmbs.motion.multibody.free import follow
+from crankmbs.motion.multibody.integrate import enter
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["Shares", "consistent", "initial", "integrated"]
@@ -87,16 +89,16 @@ def consistent(train: CrankTrain, motion: Mapping[str, Array], *, driven: bool) 
 
 def initial(train: CrankTrain, step: float) -> tuple[Array, Array, Array]:
     """Coordinates at the start of a scene, their velocities and accelerations, from which a run
-    with steps of this length [s] does not ring; of a prescribed speed a constant one."""
-    scene, anywhere = train.scene, Bounds(EVERYWHERE, EVERYWHERE, EVERYWHERE)
+    with steps of this length [s] does not ring, under the forces of the side of a jump to which the
+    crank moves; of a prescribed speed a constant one."""
+    scene = train.scene
     if scene.motion is not None:
         theta, omega, _ = map(float, speed_law(scene.motion).at_time(0.0))
     else:
         assert scene.start is not None
         theta, omega = scene.start.angle, scene.start.speed
     with closing(Answers(train)) as answers:
-        forces, model = answers.forces, answers.model
-        model.torque = forces.load(anywhere, Mode())
-        model.pushes = forces.pushes(anywhere, Mode(), theta, 1.0)
-        _, *arrays = model.quiet_start((0.0, theta, omega), step, driven=scene.motion is not None)
+        state = State(0.0, theta, omega, 0.0, begun(train))
+        enter(answers.model, answers.forces, state, 0.0, Limits(math.inf, EVERYWHERE, 0))
+        _, *arrays = answers.model.quiet_start(state[:3], step, driven=scene.motion is not None)
     return tuple(arrays)

@@ -72,7 +72,8 @@ class Forces:
     """The forces of a crank train.
 
     angles : crank angles [rad] in a period at which a run is cut
-    jumps : whether a force jumps over the angle; smooth : whether it is cut at every such jump
+    jumps : crank angles in a period at which a force jumps [rad]
+    smooth : whether a run is cut at all of them
     """
 
     def __init__(self, train: CrankTrain) -> None:
@@ -83,7 +84,7 @@ class Forces:
         angles = apart(np.concatenate(knots))
         bends = self._bends(angles)
         hard = angles[bends > _BESIDE]  # by all of a force in a radian
-        self.jumps, self.smooth = bool((bends > _JUMP).any()), len(hard) <= _MOST_CUTS
+        self.jumps, self.smooth = angles[bends > _JUMP], len(hard) <= _MOST_CUTS
         hard = hard if self.smooth else np.empty(0)
         self.angles = apart(np.concatenate([hard, friction_knots(train)]))
 

@@ -20,7 +20,7 @@ from crankmbs.motion.multibody.forces import EVERYWHERE, Bounds, Forces, Limits
 from crankmbs.motion.multibody.model import Consistent, Model
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["Path", "acceleration", "integrate"]
+__all__ = ["Path", "acceleration", "enter", "integrate"]
 
 _SAME = 1e-12  # relative: times nearer than this are one
 _ENTRY = 50  # steps that the begin of a stretch counts as
@@ -67,7 +67,7 @@ def integrate(
     sense, steps, iterations, cuts, idle = 0.0, 0, 0, 0, 0
     ending = Ending.COMPLETE
     while state.time < limits.time * (1.0 - _SAME) and state.theta not in limits.angles:
-        entered = _enter(model, forces, state, sense, limits, stops=cuts <= _MOST_SPEEDS)
+        entered = enter(model, forces, state, sense, limits, stops=cuts <= _MOST_SPEEDS)
         if entered is None or idle > 1 or steps >= limits.steps:
             ending = Ending.CALLED_OFF if entered and idle <= 1 else Ending.HELD
             break
@@ -96,11 +96,11 @@ def integrate(
 
 def acceleration(model: Model, forces: Forces, state: State) -> float | None:
     """Crank acceleration [rad/s2] with which a crank leaves a state; None where it is held."""
-    entered = _enter(model, forces, state, 0.0, Limits(math.inf, EVERYWHERE, 0))
+    entered = enter(model, forces, state, 0.0, Limits(math.inf, EVERYWHERE, 0))
     return None if entered is None else float(entered[1].acceleration[0, 2])
 
 
-def _enter(
+def enter(
     model: Model,
     forces: Forces,
     state: State,
