@@ -12,6 +12,8 @@ from scipy.optimize import brentq
 from crankmbs import (
     AngleTable,
     Constant,
+    Crank,
+    Gravity,
     InputError,
     Motion,
     Oscillation,
@@ -115,6 +117,24 @@ def test_a_turning_moment_is_in_the_lectures_work():
     assert found.status == 0
     assert abs(found.lecture_error.value) < 0.03
     assert abs(found.work.value / alone.work.value - 1.0) > 0.01
+
+
+def test_the_weight_of_the_crank_is_in_the_lectures_work():
+    """Of an even crank whose wheel is off centre: W is the range of m g s cos(theta), 2 m g s."""
+    crank = Crank(radius=0.04, inertia=1.0, mass=9.0, center_of_mass=-0.02)
+    scene = replace(
+        load_scene("coasting"),
+        crank=crank,
+        rod=Rod(length=0.2),
+        piston=Piston(mass=0.0),
+        friction=None,
+        torque=(),
+        gravity=Gravity(acceleration=9.81, angle="180 deg"),
+        start=Start(angle=0.3, speed=40.0),
+    )
+    found = flywheel(scene, 0.001)
+    assert found.work.value == pytest.approx(2.0 * 9.0 * 9.81 * 0.02, rel=1e-4)
+    assert abs(found.lecture_error.value) < 1e-4
 
 
 def test_settled_under_a_turning_moment_is_the_run_of_many_cycles():

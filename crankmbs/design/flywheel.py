@@ -14,6 +14,7 @@ from scipy.integrate import cumulative_simpson
 from crankmbs.design.freed import balanced, mean_prescribed
 from crankmbs.errors import InputError, shown
 from crankmbs.measures import Estimate, Measures, measure
+from crankmbs.mechanics.inertia import crank_weight
 from crankmbs.result import Result
 from crankmbs.scene.drives import Motion, Start
 from crankmbs.scene.run import SETTLED, Extent, Run
@@ -152,8 +153,8 @@ def _even(scene: Scene, speed: float) -> Result:
 
 def excess(even: Result, loads: tuple[Torque, ...] = ()) -> tuple[float, float]:
     """(W [J], J omega^2 [J]) of the lecture's formula, from a run of whole cycles at constant
-    speed: the range of the work that rods, and loads over the angle or of Python, do beyond its
-    mean, twice the mean kinetic energy.
+    speed: the range of the work that rods, the crank's own weight, and loads over the angle or of
+    Python do beyond its mean, twice the mean kinetic energy.
 
     >>> excess(simulate(load_scene("yi_diesel")))[0] > 0.0
     True
@@ -169,8 +170,9 @@ def _range(even: Result, loads: tuple[Torque, ...], stride: int) -> tuple[float,
     the samples."""
     angle = even.data["crank_angle"].values[::stride]
     turned = np.abs(angle - angle[0])
-    rods = even.data["crank_torque"].values[::stride].sum(axis=1)
-    work = cumulative_simpson(rods, x=turned, initial=0.0)
+    torque = even.data["crank_torque"].values[::stride].sum(axis=1)  # of rods
+    torque += crank_weight(even.scene, angle)
+    work = cumulative_simpson(torque, x=turned, initial=0.0)
     sense = math.copysign(1.0, angle[-1] - angle[0])
     speed = even.data["crank_speed"].values[::stride]
     for load in loads:
