@@ -69,8 +69,9 @@ def test_report_carries_the_numbers_of_the_result():
     assert float(speed) == 3000.0
 
 
-def test_no_figures_draws_none_and_out_says_where():
-    result = crankmbs_("run", "engine.toml", "--no-figures", "--out", "here/there")
+@pytest.mark.parametrize("option", ["-o", "--out"])
+def test_no_figures_draws_none_and_out_says_where(option):
+    result = crankmbs_("run", "engine.toml", "--no-figures", option, "here/there")
     assert result.exit_code == 0
     assert names("here/there") == {"result.nc", "motion.csv", "cycles.csv"}
     assert not Path("results").exists()

@@ -1,6 +1,7 @@
 """What a sweep answers: which value gives what is wanted, or the least; and its figures."""
 
 import re
+import shlex
 
 import numpy as np
 import pytest
@@ -333,7 +334,14 @@ def test_the_commands_draw_and_solve(tmp_path):
     assert done.exit_code == 0, done.output
     assert "4 cases over rod.length\n3 reached their end\n" in done.stdout
     assert "1 cannot be built; the first: rod.length must be at least" in done.stdout
-    none = ["sweep", "yi_diesel", "--vary", "rod.length=0.03..0.04 m:2", "-o", f"{store}_none"]
+    also = re.search(
+        r"\nalso stored, of each cylinder and lecture formula; to see it: (.*); an", done.stdout
+    )
+    assert also
+    assert crankmbs_(*shlex.split(also[1])[1:], "-o", str(tmp_path / "also")).exit_code == 0
+    one_value = ["--vary", "run.until=1 cycle"]
+    none = ["sweep", "yi_diesel", "--vary", "rod.length=0.03..0.04 m:2", *one_value]
+    none += ["-o", f"{store}_none"]
     done = crankmbs_(*none)
     assert done.exit_code == 3
     assert "2 cases over rod.length\nnone reached its end\n2 cannot be built; the" in done.stdout
@@ -341,6 +349,7 @@ def test_the_commands_draw_and_solve(tmp_path):
     assert crankmbs_("plot", store, *shown, "-o", str(tmp_path / "f")).exit_code == 0
     assert names(tmp_path / "f") == {"side_thrust_by_S1.png", "peak_side_force.png"}
     metres = crankmbs_("sweep", "yi_diesel", "--vary", "rod.length=100..200:2", "-o", f"{store}_m")
+    assert "also stored" not in crankmbs_(*none[:-1], f"{store}_no").stdout
     assert "2 reached their end\nwarning: rod.length: a rod of 100 m is " in metres.stdout
     assert "warning" not in done.stdout
     said = refused("plot", store, *shown[:2], "--limit", "5 N", "-o", str(tmp_path / "g"))

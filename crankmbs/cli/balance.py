@@ -9,7 +9,7 @@ from typer import Exit, Option, echo
 
 from crankmbs.cli.folder import results_folder, wrote
 from crankmbs.cli.loads import loads_table
-from crankmbs.cli.options import CostCap, NoFigures, Out, SceneName, WrittenScene
+from crankmbs.cli.options import CostCap, NoFigures, OutBesideScene, SceneName, WrittenScene
 from crankmbs.cli.progress import progress
 from crankmbs.cli.text import heading, table
 from crankmbs.digits import digits, error_digits
@@ -30,7 +30,7 @@ def balance(
     share: Annotated[str, Option(help="Share of the reciprocating mass that is balanced.")] = "50%",
     cost_cap: CostCap = 10.0,
     write: WrittenScene = None,
-    out: Out = None,
+    out: OutBesideScene = None,
     no_figures: NoFigures = False,
 ) -> None:
     """Find counterweights; show what is left of first and second order, before and after."""

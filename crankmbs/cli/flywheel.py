@@ -11,7 +11,7 @@ from typer import Exit, Option, echo
 
 from crankmbs.cli.folder import results_folder, wrote_into
 from crankmbs.cli.loads import loads_table
-from crankmbs.cli.options import NoFigures, Out, SceneName, WrittenScene
+from crankmbs.cli.options import NoFigures, OutBesideScene, SceneName, WrittenScene
 from crankmbs.cli.progress import progress
 from crankmbs.cli.text import heading, table
 from crankmbs.digits import digits, error_digits
@@ -38,7 +38,7 @@ def flywheel(
         str, Option(help='Wanted (max - min)/mean of the speed, as "1 %" or 0.01.')
     ] = "1 %",
     write: WrittenScene = None,
-    out: Out = None,
+    out: OutBesideScene = None,
     no_figures: NoFigures = False,
 ) -> None:
     """Find the crank inertia that gives a fluctuation of speed on the settled cycle."""

@@ -13,6 +13,7 @@ __all__ = [
     "Index",
     "NoFigures",
     "Out",
+    "OutBesideScene",
     "Rtol",
     "SceneName",
     "Separator",
@@ -32,7 +33,10 @@ CostCap = Annotated[
 
 Rtol = Annotated[float | None, Option(help="Relative global error asked for.")]
 Until = Annotated[str | None, Option(help='End: "20 cycles", "10 rev", "0.75 s" or "settled".')]
-Out = Annotated[Path | None, Option(help="Folder of the results; default results/NAME.")]
+_RESULTS = "Folder of the results; default results/NAME."
+Out = Annotated[Path | None, Option("-o", "--out", metavar="DIR", help=_RESULTS)]
+OutBesideScene = Annotated[Path | None, Option("--out", metavar="DIR", help=_RESULTS)]
+"""Where -o is the scene with the answer."""
 WrittenScene = Annotated[
     Path | None,
     Option(

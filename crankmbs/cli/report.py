@@ -68,6 +68,7 @@ def comparison(result: Result, confirmation: Confirmation) -> str:
 
 
 _FIRST = 5  # events that are printed
+_EVENT_HEADINGS = ["event", "time [s]", "crank angle [deg]", "crank speed [rpm]"]
 
 
 def _about(result: Result, measures: Measures) -> str:
@@ -106,18 +107,19 @@ def _events(result: Result) -> list[str]:
     if count == 0 and not left_out:
         return []
     decided = f", {np.count_nonzero(fuel)} of them decisions on the fuel" if fuel.any() else ""
-    lines = [f"{count}{decided}{'; ' if left_out else ''}{left_out}"]
+    said = f"{'events':<12} {count}{decided}{'; ' if left_out else ''}{left_out}"
     words = event_words(result)
     rows = np.array([k for k in range(count) if words[k]] or range(count))
+    lines = []
     for row in rows[:_FIRST].tolist():
         time, angle, speed = (
             float(events.values(name)[row]) for name in ("time", "crank_angle", "crank_speed")
         )
-        place = f"{time:.6g} s, {math.degrees(angle):.6g} deg, {speed / RPM:.6g} rpm"
-        event = words[row] if fuel[row] else ""
-        lines.append(f"{place}: {event or events.values('text')[row]}")
-    lines += ["..."] if len(rows) > _FIRST else []
-    return [f"{'' if k else 'events':<12} {line}" for k, line in enumerate(lines)]
+        event = (words[row] if fuel[row] else "") or str(events.values("text")[row])
+        lines.append([event, *(f"{x:.6g}" for x in (time, math.degrees(angle), speed / RPM))])
+    shown = table(_EVENT_HEADINGS, lines).splitlines() if lines else []
+    shown += ["..."] if len(rows) > _FIRST else []
+    return [said, *(f"{'':<12} {line}" for line in shown)]
 
 
 def _error_line(result: Result) -> str:

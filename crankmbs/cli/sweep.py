@@ -79,7 +79,8 @@ def sweep(
         echo(f"series of {plan.cases.count} cases take {_bytes(plan.bytes)} before packing")
     _fill(plan, out, workers, cluster)
     title, result = heading(path.stem, plan.scene.title), summary(out)
-    echo(f"{title}\n\n{_report(plan, result)}\n\nwrote {out}")
+    also = f"\n{_also_stored(plan, out)}" if result.bounds else ""
+    echo(f"{title}\n\n{_report(plan, result)}{also}\n\nwrote {out}")
     if 0 not in result.ended:
         raise Exit(3)
 
@@ -209,7 +210,7 @@ def _progress(count: int) -> Iterator[Callable[[int], None]]:
 
 
 def _report(plan: Plan, summary: Summary) -> str:
-    lines = [f"{plan.cases.count} cases over {', '.join(plan.cases.names)}"]
+    lines = [f"{plan.cases.count} cases over {', '.join(plan.cases.varied)}"]
     if 0 not in summary.ended:
         lines.append("none reached its end")
     for status, (count, message) in sorted(summary.ended.items(), key=lambda item: item[0] != 0):
@@ -220,6 +221,22 @@ def _report(plan: Plan, summary: Summary) -> str:
         headings = ["over all cases", "least", "largest", "num. error at most"]
         lines += ["", table(headings, [_bounds(bounds) for bounds in summary.bounds])]
     return "\n".join(lines)
+
+
+_EACH = {"cylinder": "cylinder", "journal": "bearing", "lecture": "lecture formula"}
+
+
+def _also_stored(plan: Plan, out: Path) -> str:
+    """What the store has of each of several, and how to see it."""
+    from crankmbs.sweep.columns import columns_of
+
+    dims = {dim for column in columns_of(plan.scene, series=False).values() for dim in column.dims}
+    *most, last = (name for dim, name in _EACH.items() if dim in dims)
+    each = f"{', '.join(most)} and {last}" if most else last
+    return (
+        f"also stored, of each {each}; to see it: crankmbs plot "
+        f'{shlex.quote(str(out))} --show "crank pin peak"; an unknown name lists all'
+    )
 
 
 def _warnings(plan: Plan) -> list[str]:

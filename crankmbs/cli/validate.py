@@ -46,7 +46,10 @@ def validate(
     verbose: Annotated[
         bool, Option("--verbose", help="Print every reference and every cause.")
     ] = False,
-    out: Annotated[Path | None, Option(help="Write tables and figures into this folder.")] = None,
+    out: Annotated[
+        Path | None,
+        Option("-o", "--out", metavar="DIR", help="Write tables and figures into this folder."),
+    ] = None,
     no_figures: NoFigures = False,
 ) -> None:
     """Show how far lecture formulas and your own are off a run, and why."""

@@ -60,6 +60,11 @@ class Cases(ABC):
         """The values of all knobs in some successive cases, case by case."""
         return tuple(zip(*(knob.values.tolist() for knob in self.at(rows)), strict=True))
 
+    @property
+    def varied(self) -> tuple[str, ...]:
+        """The names of the knobs of more than one value; where there is none, of all."""
+        return self.names
+
     @cached_property
     def fingerprint(self) -> str:
         """What differs from that of all other cases; empty where nothing identifies a value."""
@@ -88,6 +93,11 @@ class Grid(Cases):
         return self._knobs
 
     @property
+    def varied(self) -> tuple[str, ...]:
+        """Those of several levels."""
+        return _varied(self._knobs)
+
+    @property
     def _identity(self) -> object:
         return [knob.values.tolist() for knob in self._knobs]
 
@@ -102,6 +112,11 @@ class Listed(Cases):
     def at(self, rows: range) -> tuple[Knob, ...]:
         """Cut from the lists."""
         return tuple(knob.at(slice(rows.start, rows.stop)) for knob in self._knobs)
+
+    @property
+    def varied(self) -> tuple[str, ...]:
+        """Those that differ in the list."""
+        return _varied(self._knobs)
 
     @property
     def _identity(self) -> object:
@@ -125,6 +140,13 @@ class Spread(Cases):
     def _identity(self) -> object:
         """The first points too: another version of SciPy may draw others."""
         return [self._ranges, self._sample, self._sample.points(range(min(self.count, _FIRST)))]
+
+
+def _varied(knobs: tuple[Knob, ...]) -> tuple[str, ...]:
+    """The names of the knobs of more than one value; where there is none, of all."""
+    values = {knob.name: knob.values.tolist() for knob in knobs}
+    several = tuple(name for name, each in values.items() if any(x != each[0] for x in each))
+    return several or tuple(values)
 
 
 def cases_of(scene: Scene, vary: object) -> Cases:
