@@ -200,7 +200,8 @@ NUMBERS = [
     ("rod_ratio", "abc"), ("rod_ratio", ""), ("rod_ratio", "1e"), ("rod_ratio", "nan"),
     ("rod_ratio", "inf"), ("offset", "-inf"), ("rod_ratio", "0.05"), ("rod_ratio", "0.95"),
     ("flywheel", "-1"), ("flywheel", "1000"), ("load", "200.5"), ("pressure", "19"),
-    ("speed", "1e9"), ("rod_mass", "-0.1"), ("offset", "0x10"), ("load", "1,5"),
+    ("speed", "1e9"), ("rod_mass", "-0.1"), ("offset", "0x10"), ("load", "1,500"),
+    ("load", "1,5,0"), ("load", ","),
 ]  # fmt: skip
 
 
@@ -211,7 +212,8 @@ def test_a_number_that_cannot_be_is_refused_as_a_key_of_a_scene_would_be(kept, n
     (knob,) = (each for each in knobs_of(load_scene("propeller")) if each.name == name)
     sentence = refused_number(knob, text)
     kept.type(name, text)
-    assert kept.message == sentence
+    unit = f", in {knob.unit}" if knob.unit else ""
+    assert kept.message == f"{sentence}; type for example {knob.value:.{knob.decimals}f}{unit}"
     kept.type(name, f"{knob.value!r}")
     assert kept.message == ""
     kept.go(f"#{name}={text}")
@@ -221,6 +223,24 @@ def test_a_number_that_cannot_be_is_refused_as_a_key_of_a_scene_would_be(kept, n
     kept.go("#")
     kept.page.wait_for_function("() => document.getElementById('message').hidden")
     assert kept.settle().curve() == good
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "value"),
+    [
+        ("load", "62,5", 62.5),
+        ("rod_ratio", " 0,300 ", 0.3),
+        ("rod_mass", ",25", 0.25),
+        ("offset", "\u22121,25", -1.25),
+    ],
+)
+def test_a_decimal_comma_is_a_decimal_point_in_a_field(kept, name, text, value):
+    kept.type(name, text)
+    assert kept.message == ""
+    assert float(kept.page.input_value(f"#knob-{name}")) == value
+    assert f"{name}={value}" in kept.address
+    kept.go("#")
+    kept.settle()
 
 
 def refused_number(knob, text):

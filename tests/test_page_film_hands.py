@@ -218,9 +218,12 @@ def test_a_swipe_scrolls_a_finger_across_moves_the_cursor_and_a_tap_does(phone):
 @pytest.mark.parametrize("size", [PHONE, LAPTOP, LARGE], ids=str)
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_nothing_moves_its_place_and_nothing_leaves_the_screen(browser, files, size, scheme):
-    places = ("header", "#idea", "#stage", ".now", "#now-speed", "#now-fuel", "#upper svg")
+    places = ("header", "#idea", "#stage", ".now", "#now-speed", "#now-fuel", "#upper svg", "#play")
     with film(browser, files["run_up"], size=size, color_scheme=scheme) as visited:
         before = boxes(visited, *places)
+        visited.page.click("#play")
+        visited.page.evaluate("document.getElementById('now-speed').textContent = '1088.8 rpm'")
+        assert boxes(visited, *places) == before
         for share in (0.013, 0.3, 0.71, 1.0):
             slide(visited, share * end(visited))
             assert boxes(visited, *places) == before
@@ -263,6 +266,17 @@ def test_the_plot_leaves_room_for_words_and_says_its_scales(browser, files):
             assert np.diff(sorted(box["y"] for box in ticks)).min() > 0.7 * ticks[0]["height"]
         assert "share of the fuel" in visited.page.text_content("#upper svg")
         assert "crank speed [rpm]" in visited.page.text_content("#upper svg")
+
+
+def test_an_axis_of_a_crank_at_rest_can_be_read(page):
+    page.page.select_option("#slower", index=8)
+    slide(page, end(page))
+    svg = page.page.locator("#upper svg").bounding_box()
+    ticks = page.page.locator("#upper svg g:nth-of-type(1) text.end").all()
+    assert len(ticks) >= 2
+    for tick in ticks:
+        assert len(tick.text_content()) <= 6
+        assert tick.bounding_box()["x"] >= svg["x"]
 
 
 def test_large_type_leaves_the_plot_readable(page):

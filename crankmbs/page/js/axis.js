@@ -59,7 +59,7 @@ function angles({ pen, lines }, box, right, { x, type, marks, last }) {
   const step = QUARTERS.find((each) => (x.high - x.low) / each <= wide) ?? 720;
   for (let k = Math.ceil(x.low / step - 1e-9); k * step <= x.high + 1e-6; k++) {
     lines.grid += upright(box, right(k * step));
-    const place = { x: right(k * step), y: box.bottom + 1.15 * type, class: "tick" };
+    const place = { x: right(k * step), y: box.bottom + 1.25 * type, class: "tick" };
     if (last) pen.add("text", place, `${readable(k * step, 0)}°`);
   }
   for (const { degrees, name } of marks) lines[`dead ${name}`] += upright(box, right(degrees));
@@ -71,7 +71,7 @@ function abscissa({ pen, lines }, box, right, { x, type, shape, last }) {
   const { ticks, step } = roundTicks(x.low, x.high, count);
   for (const tick of ticks) {
     lines[styleOf(tick, step)] += upright(box, right(tick));
-    const place = { x: right(tick), y: box.bottom + 1.15 * type, class: "tick" };
+    const place = { x: right(tick), y: box.bottom + 1.25 * type, class: "tick" };
     if (last) pen.add("text", place, readable(tick, digitsOf(step)));
   }
   if (!last) return;
@@ -104,7 +104,8 @@ function rangeOf(all, holds = []) {
   let low = Math.min(...values);
   let high = Math.max(...values);
   if (!values.length) [low, high] = [-1, 1];
-  const size = Math.max(Math.abs(low), Math.abs(high), 1e-12);
+  const most = Math.max(Math.abs(low), Math.abs(high));
+  const size = most > 1e-12 ? most : 1; // at rest, an axis about 0 that can be read
   if (!(high - low > 1e-9 * size)) [low, high] = [low - 0.01 * size, high + 0.01 * size];
   const room = 0.03 * (high - low);
   const { step } = roundTicks(low, high, 24);

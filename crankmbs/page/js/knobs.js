@@ -2,6 +2,9 @@
 import { Refused } from "./refused.js";
 import { numberOf } from "./state.js";
 
+// a decimal comma, but for 1,200, which may be a thousand and two hundred
+const COMMA = /^(?!\D*[1-9]\d{0,2},\d{3}\s*$)(\s*[+\u2212-]?\d*),(\d+\s*)$/;
+
 export class Knobs {
   /** root : where they stand, its data-prefix before their ids; knobs : { name, label, unit, low,
    * high, value, decimals, about }; sentences : templates; first : names of those that the page
@@ -48,11 +51,13 @@ export class Knobs {
   /** A number that was typed: the knob as it was, with the reason, where it cannot be. */
   type(knob, text) {
     try {
-      this.turn(knob, numberOf(text, knob, this.rules));
+      this.turn(knob, numberOf(text.replace(COMMA, "$1.$2"), knob, this.rules));
       this.on.release();
     } catch (refused) {
       if (!(refused instanceof Refused)) throw refused;
-      this.on.refuse(refused.message);
+      const unit = knob.unit && `, in ${knob.unit}`;
+      const example = knob.value.toFixed(knob.decimals);
+      this.on.refuse(`${refused.message}; type for example ${example}${unit}`);
     }
   }
 
