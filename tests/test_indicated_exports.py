@@ -79,6 +79,29 @@ def test_a_heading_is_a_name_and_a_unit(above, heading):
     assert headings_of([[above, "x"]], 2)[0] == heading
 
 
+@pytest.mark.parametrize(
+    ("above", "names", "units"),
+    [
+        (["CA,PCYL1,Speed", "deg,bar,rpm"], "CA PCYL1 Speed", "deg bar rpm"),
+        (["cycle,crank_deg,P1,T", "1,deg,bar,degC"], "cycle crank_deg P1 T", "1 deg bar degc"),
+        (["cycle,crank_deg,P1,T", "-,deg,V,degC"], "cycle crank_deg P1 T", "- deg v degc"),
+        (["CA,speed", "deg,rpm"], "CA speed", "deg rpm"),
+        (["Rig 3,12,x", "x,P1,n", "deg,V,rpm"], "x P1 n", "deg v rpm"),
+        (["Rig 3,12,x", "deg,P1,n"], "deg P1 n", None),  # a name that is a unit, below a title
+        (["Rig 3,test 12", "deg,P1"], "deg P1", None),
+        (["deg,P1,rpm"], "deg P1 rpm", None),
+        (["-,deg,bar,rpm"], "", "- deg bar rpm"),  # no names
+        (["Ambient,1.02,bar", "CA [deg],P1 [bar],P2 [bar]"], "CA P1 P2", "deg bar bar"),
+        (["Test,10,s,1.02,bar", "CA,P1,P2,P3,P4"], "CA P1 P2 P3 P4", None),
+    ],
+)
+def test_a_row_of_units_has_those_of_other_columns_too(above, names, units):
+    rows = [line.split(",") for line in above]
+    found = headings_of(rows, len(rows[-1]))
+    assert [each.name for each in found if each.name] == names.split()
+    assert [each.unit for each in found] == (units or " " * (len(found) - 1)).split(" ")
+
+
 def test_the_angle_may_be_named(tmp_path):
     names, units = ["PCYL1", "Position", "CA", "Theta"], ["bar", "", "deg", "deg"]
     columns = [EXACT, FULL, 2.0 * FULL, 2.0 * FULL]
