@@ -71,6 +71,13 @@ def test_a_unit_stands_behind_its_quantity(tmp_path, above):
         ("heat release J/deg", Heading("heat release J/deg", "")),
         ("p in bar(g)", Heading("p", "bar", "gauge")),
         ("p/V", Heading("p", "v")),
+        ("Zylinderdruck abs [bar]", Heading("Zylinderdruck abs", "bar", "absolute")),
+        ("p_abs_bar", Heading("p_abs", "bar", "absolute")),
+        ("p_gauge [kPa]", Heading("p_gauge", "kpa", "gauge")),
+        ("Überdruck Zyl. 1 [bar]", Heading("Überdruck Zyl. 1", "bar", "gauge")),
+        ("p rel. [bar(a)]", Heading("p rel.", "bar", "absolute")),  # the unit says it
+        ("absorber pressure [bar]", Heading("absorber pressure", "bar")),
+        ("gauge, abs [bar]", Heading("gauge, abs", "bar")),
         ("time_ms", Heading("time", "ms")),
         ("p_s", Heading("p_s", "")),  # an intake's pressure, and no time
     ],
@@ -204,7 +211,7 @@ def test_a_reference_against_the_unit_is_warned_of(tmp_path):
     found = read_pressure(path, reference="absolute")
     assert found.warnings == (
         "warning: cylinder 1: the pressures are absolute and stay as they are (as given, though "
-        "the unit says gauge)",
+        "the heading says gauge)",
     )
 
 

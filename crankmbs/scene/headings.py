@@ -54,6 +54,12 @@ _SPELT = {
     "bars": "bar",
 }
 _REFERENCED = re.compile(r"(bar|psi|kpa|mpa|mbar)[ _]?\(?([ag])(?:bs|auge)?\)?")
+_REFERENCES = {  # words of a name
+    "absolute": re.compile(r"(?<![^\W\d_])(abs|absolute?|absolutdruck)(?![^\W\d_])", re.IGNORECASE),
+    "gauge": re.compile(
+        r"(?<![^\W\d_])(gauge|rel|relativ|relative|(ü|ue)berdruck)(?![^\W\d_])", re.IGNORECASE
+    ),
+}
 _DEGREES = {"deg", "°", "degca", "deg ca", "°ca", "ca", "cad", "°kw", "grad", "degree", "degrees"}
 _DEGREES |= {"°crk", "deg crk", "degcrk", "°ka", "kw", "deg crank", "dega", "ºca", "º"}
 _ANGULAR = {**dict.fromkeys(_DEGREES, DEGREE), "rad": 1.0, "rev": 2.0 * math.pi}
@@ -78,7 +84,7 @@ _MOST = 10_000  # columns that a range names
 class Heading(NamedTuple):
     """What stands above a column: its name without its unit, and the unit in small letters.
 
-    reference : "absolute" or "gauge" where the unit says so, as bar(a) does
+    reference : "absolute" or "gauge" where the unit says so, as bar(a) does, or a word of the name
     """
 
     name: str
@@ -337,4 +343,7 @@ def _heading(name: str, unit: str) -> Heading:
     elif numbered and not unit:
         text, written = numbered[1] + numbered[numbered.re.groups], numbered[numbered.re.groups - 1]
     plain, reference = _unit(written)
+    if not reference and plain not in TIME_UNITS and plain not in _ANGULAR:
+        named = [kind for kind, word in _REFERENCES.items() if word.search(text)]
+        reference = named[0] if len(named) == 1 else ""
     return Heading(text, plain, reference)
