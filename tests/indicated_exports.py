@@ -200,4 +200,28 @@ EXPORTS |= {
         + "\n".join(f"{a:.7e}\t{p:.7e}" for a, p in zip(FULL, EXACT, strict=True)),
         "utf-8",
     ),
+    "units that are of nothing here": (
+        rows(
+            [EXACT, *(0.0 * EXACT + k for k in (3000.0, 40.0, 12.0, 88.0))],
+            ["PCYL1", "Speed", "Torque", "Fuel", "TOIL"],
+            ["bar", "rpm", "Nm", "mg", "degC"],
+        ),
+        "utf-8",
+    ),
+    "units that are of nothing here, above the names": (
+        rows([EXACT, 0.0 * EXACT], ["PCYL1", "Speed"], ["bar", "1/min"]).replace(
+            "CA;PCYL1;Speed\ndeg;bar;1/min\n", "deg;bar;1/min\nCA;PCYL1;Speed\n", 1
+        ),
+        "utf-8",
+    ),
+    "an angle named by its unit, beside one of nothing here": (
+        text(
+            [LONG // 720 + 1, LONG % 720, pressure_of(FIRED, LONG - 360.0), 0.0 * LONG],
+            ["cycle", "crank_deg", "P_cyl_1", "T_oil"],
+            ["", "deg", "bar", "degC"],
+            separator=",",
+            comma=False,
+        ),
+        "utf-8",
+    ),
 }

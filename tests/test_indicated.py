@@ -71,7 +71,10 @@ def test_the_dead_centre_is_moved_only_on_request(tmp_path):
     assert abs(kept.cylinders[0].imep[0] / 1e5 - exact) > 0.1  # what half a degree costs
     low, high = (imep / 1e5 for imep in kept.cylinders[0].imep_within)
     assert low - 2e-3 < exact < high + 2e-3  # and what stands beside it
-    beside = f", from {low:.4g} to {high:.4g} bar with the dead centre where it may lie"
+    beside = (
+        f" with the file's dead centre, from {low:.4g} to {high:.4g} bar with the dead centre "
+        "where it may lie"
+    )
     assert any(beside in sentence for sentence in kept.sentences)
 
 
@@ -123,6 +126,50 @@ def test_the_unit_tells_gauge_from_absolute(tmp_path):
     assert found(tmp_path, columns_of_cycles(ANGLE, values, head="", reference="(a)")).absolute
     gauge = columns_of_cycles(ANGLE, values - 1.0, head="", reference="g")
     assert not found(tmp_path, gauge).absolute
+
+
+@pytest.mark.parametrize(("word", "offset"), [("abs", 0.0), ("gauge", -1.0)])
+def test_the_name_tells_gauge_from_absolute(tmp_path, word, offset):
+    content = text([ANGLE, pressure_of(FIRED, ANGLE) + offset], ["CA", f"p_{word} [bar]"])
+    there = found(tmp_path, content)
+    assert there.absolute is (word == "abs")
+    assert there.sentences[1].endswith(" (as the heading says)")
+
+
+@pytest.mark.parametrize(
+    ("offset", "reference", "against"),
+    [
+        (0.0, "gauge", "asks for -0.12 to 0.25 bar more: they look absolute)"),
+        (-1.0, "absolute", "asks for 0.88 to 1.25 bar more: they look gauge)"),
+        (-1.0, "gauge 1 bar", ""),
+        (-1.0, "gauge 0.6 bar", "asks for 0.88 to 1.25 bar more)"),
+        (
+            -0.5,
+            "absolute",
+            "asks for 0.38 to 0.75 bar more: they look neither absolute nor gauge, and "
+            'reference="polytrope 1.32" adds it)',
+        ),
+        (-0.5, "polytrope 1.32", ""),
+    ],
+)
+def test_a_reference_is_held_against_the_compression(tmp_path, offset, reference, against):
+    content = columns_of_cycles(ANGLE, cycles(FIRED, ANGLE, 1) + offset)
+    there = found(tmp_path, content, reference=reference)
+    assert (len(there.warnings) == 1) is bool(against), there.warnings
+    assert all(each.endswith(against) and ", though a poly" in each for each in there.warnings)
+    if against and reference == "absolute":
+        said = str(there)
+        assert "the dead centre is not checked: its compression would show it -" in said
+        assert "firing_tdc" not in said
+        assert "with the dead centre where it may lie" not in said
+
+
+@pytest.mark.parametrize("dead_centre", [-3.0, 3.0])
+def test_a_dead_centre_beside_the_true_one_is_no_other_reference(tmp_path, dead_centre):
+    """An error that is common moves what the compression asks for by a quarter of a bar."""
+    values = cycles(FIRED, ANGLE, 5, noise=0.02, dead_centre=dead_centre)
+    there = found(tmp_path, columns_of_cycles(ANGLE, values), reference="absolute")
+    assert not any("though" in each for each in there.warnings)
 
 
 @pytest.mark.parametrize("noise", [0.01, 0.1, 0.5])

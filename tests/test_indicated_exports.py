@@ -71,12 +71,42 @@ def test_a_unit_stands_behind_its_quantity(tmp_path, above):
         ("heat release J/deg", Heading("heat release J/deg", "")),
         ("p in bar(g)", Heading("p", "bar", "gauge")),
         ("p/V", Heading("p", "v")),
+        ("Zylinderdruck abs [bar]", Heading("Zylinderdruck abs", "bar", "absolute")),
+        ("p_abs_bar", Heading("p_abs", "bar", "absolute")),
+        ("p_gauge [kPa]", Heading("p_gauge", "kpa", "gauge")),
+        ("Überdruck Zyl. 1 [bar]", Heading("Überdruck Zyl. 1", "bar", "gauge")),
+        ("p rel. [bar(a)]", Heading("p rel.", "bar", "absolute")),  # the unit says it
+        ("absorber pressure [bar]", Heading("absorber pressure", "bar")),
+        ("gauge, abs [bar]", Heading("gauge, abs", "bar")),
         ("time_ms", Heading("time", "ms")),
         ("p_s", Heading("p_s", "")),  # an intake's pressure, and no time
     ],
 )
 def test_a_heading_is_a_name_and_a_unit(above, heading):
     assert headings_of([[above, "x"]], 2)[0] == heading
+
+
+@pytest.mark.parametrize(
+    ("above", "names", "units"),
+    [
+        (["CA,PCYL1,Speed", "deg,bar,rpm"], "CA PCYL1 Speed", "deg bar rpm"),
+        (["cycle,crank_deg,P1,T", "1,deg,bar,degC"], "cycle crank_deg P1 T", "1 deg bar degc"),
+        (["cycle,crank_deg,P1,T", "-,deg,V,degC"], "cycle crank_deg P1 T", "- deg v degc"),
+        (["CA,speed", "deg,rpm"], "CA speed", "deg rpm"),
+        (["Rig 3,12,x", "x,P1,n", "deg,V,rpm"], "x P1 n", "deg v rpm"),
+        (["Rig 3,12,x", "deg,P1,n"], "deg P1 n", None),  # a name that is a unit, below a title
+        (["Rig 3,test 12", "deg,P1"], "deg P1", None),
+        (["deg,P1,rpm"], "deg P1 rpm", None),
+        (["-,deg,bar,rpm"], "", "- deg bar rpm"),  # no names
+        (["Ambient,1.02,bar", "CA [deg],P1 [bar],P2 [bar]"], "CA P1 P2", "deg bar bar"),
+        (["Test,10,s,1.02,bar", "CA,P1,P2,P3,P4"], "CA P1 P2 P3 P4", None),
+    ],
+)
+def test_a_row_of_units_has_those_of_other_columns_too(above, names, units):
+    rows = [line.split(",") for line in above]
+    found = headings_of(rows, len(rows[-1]))
+    assert [each.name for each in found if each.name] == names.split()
+    assert [each.unit for each in found] == (units or " " * (len(found) - 1)).split(" ")
 
 
 def test_the_angle_may_be_named(tmp_path):
@@ -181,7 +211,7 @@ def test_a_reference_against_the_unit_is_warned_of(tmp_path):
     found = read_pressure(path, reference="absolute")
     assert found.warnings == (
         "warning: cylinder 1: the pressures are absolute and stay as they are (as given, though "
-        "the unit says gauge)",
+        "the heading says gauge)",
     )
 
 

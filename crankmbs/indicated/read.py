@@ -100,7 +100,7 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
     speed = _speed(record, cylinders[0].firing, shape, sheet.name)
     remarks += found.remarks
     for cylinder in cylinders:
-        remarks += sentences_of(cylinder, shape, found.absolute)
+        remarks += sentences_of(cylinder, shape, found.absolute, doubted=found.doubted)
     if shape is None:
         remarks.append(
             "no stroke and rod length are known: without a scene no imep and no volumes are found"
@@ -121,11 +121,12 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
 
 class _Found(NamedTuple):
     """The cylinders, and their cycles before these were referenced; whether their pressures are
-    absolute; what was done."""
+    absolute, and whether their compression speaks against that; what was done."""
 
     cylinders: tuple[CylinderPressure, ...]
     cut: list[Cycles]
     absolute: bool
+    doubted: bool
     remarks: list[str]
 
 
@@ -151,14 +152,15 @@ def _cylinders(
     first : the file's angle [deg] of it; None: as the options or the peak have it
     """
     cut, remarks = _cut(record, options, scene, first)
-    reference, why = decide(cut, options, shape)
+    reference, why, against = decide(cut, options, shape)
+    why += f", though {against}" if against else ""
     cylinders, absolute = [], True
     for cycles in cut:
         added, absolute, words = refer(cycles, reference, shape)
-        look = "warning: " if "though" in why else ""
+        look = "warning: " if against else ""
         remarks.append(f"{look}cylinder {cycles.channel.cylinder}: {words} ({why})")
         cylinders.append(cylinder_of(cycles, added, shape, options, absolute))
-    return _Found(tuple(cylinders), cut, absolute, remarks)
+    return _Found(tuple(cylinders), cut, absolute, bool(against), remarks)
 
 
 def _by_pressure(

@@ -61,39 +61,86 @@ class Cycles(NamedTuple):
         return (np.abs(np.mod(self.phi, 360.0) - 180.0) <= _INLET) & before
 
 
+class _Compression(NamedTuple):
+    """What a polytrope of 1.28 to 1.40 asks for.
+
+    ends : for each cylinder what is least and most to be added [Pa]
+    """
+
+    ends: list[tuple[float, float]]
+
+    @property
+    def asked(self) -> str:
+        """In words."""
+        low, high = min(low for low, _ in self.ends), max(high for _, high in self.ends)
+        return f"a polytrope of 1.28 to 1.40 asks for {low / BAR:.2f} to {high / BAR:.2f} bar more"
+
+    @property
+    def telling(self) -> bool:
+        """Whether the cylinders ask for the same, and for less than absolute and gauge differ by
+        twice."""
+        lows, highs = zip(*self.ends, strict=True)
+        wide, apart = max(highs) - min(lows), max(lows) - min(highs)
+        return bool(wide < 2.0 * _AMBIENT and apart <= 2.0 * _NEAR)
+
+    def asks_for(self, offset: float) -> bool:
+        """Whether this [Pa] may be what is to be added."""
+        return all(low - _NEAR <= offset <= high + _NEAR for low, high in self.ends)
+
+    @property
+    def kind(self) -> str:
+        """Absolute or gauge, where only one of them can be; else nothing."""
+        absolute, gauge = self.asks_for(0.0), self.asks_for(_AMBIENT)
+        if absolute == gauge or not self.telling:
+            return ""
+        return "absolute" if absolute else "gauge"
+
+    def against(self, reference: Reference) -> str:
+        """What speaks against a reference, in words; nothing where it may be right."""
+        kind, value = reference
+        added = {"absolute": 0.0, "gauge": _AMBIENT if value is None else value}.get(kind)
+        if added is None or not self.telling or self.asks_for(added):
+            return ""
+        look = f": they look {self.kind}" if self.kind != kind else ""
+        if not self.kind:
+            look = ': they look neither absolute nor gauge, and reference="polytrope 1.32" adds it'
+        return f"{self.asked}{look}"
+
+
 def decide(
     cylinders: Sequence[Cycles], options: Options, shape: Shape | None
-) -> tuple[Reference, str]:
-    """The reference of the signals, and why: as given, as the file says, as the compression shows.
+) -> tuple[Reference, str, str]:
+    """The reference of the signals, and why: as given, as the file says, as the compression shows;
+    and what speaks against it, else nothing.
 
     Raises
     ------
     UndecidedError : nothing of these
     """
-    units = {each.channel.reference for each in cylinders}
-    if options.reference is not None:
-        against = {"absolute": "gauge", "gauge": "absolute"}.get(options.reference.kind)
-        though = f", though the unit says {against}" if against in units else ""
-        return options.reference, f"as given{though}"
-    if len(units) == 1 and "" not in units:
-        return Reference(units.pop()), "as the unit says"
+    said = {each.channel.reference for each in cylinders}
     means = [each.pressure.mean(axis=0) for each in cylinders]
-    lows = [np.mean(mean[each.at_inlet]) for mean, each in zip(means, cylinders, strict=True)]
-    levels = f"the gas exchange lies at {', '.join(f'{low / BAR:.3g}' for low in lows)} bar"
+    compression = None
     if shape is not None and shape.ratio is not None:
-        ends = [
+        asked = (
             sorted(float(by_polytrope(each.phi, mean[None], shape, n)[0]) for n in EXPONENTS)
             for mean, each in zip(means, cylinders, strict=True)
-        ]
-        low, high = min(r[0] for r in ends), max(r[1] for r in ends)
-        least, most = max(r[0] for r in ends), min(r[1] for r in ends)
-        asked = f"a polytrope of 1.28 to 1.40 asks for {low / BAR:.2f} to {high / BAR:.2f} bar more"
-        zero, ambient = (
-            all(r[0] - _NEAR <= offset <= r[1] + _NEAR for r in ends) for offset in (0.0, _AMBIENT)
         )
-        if zero != ambient and high - low < 2.0 * _AMBIENT and least <= most + 2.0 * _NEAR:
-            return Reference("absolute" if zero else "gauge"), f"as the compression shows: {asked}"
-        levels += f", and {asked}"
+        compression = _Compression([(low, high) for low, high in asked])
+    if options.reference is not None or (len(said) == 1 and "" not in said):
+        reference = options.reference or Reference(min(said))
+        against = [] if compression is None else [compression.against(reference)]
+        other = {"absolute": "gauge", "gauge": "absolute"}.get(reference.kind)
+        if other in said:
+            against.insert(0, f"the heading says {other}")
+        why = "as the heading says" if options.reference is None else "as given"
+        return reference, why, ", and ".join(filter(None, against))
+    lows = [np.mean(mean[each.at_inlet]) for mean, each in zip(means, cylinders, strict=True)]
+    levels = f"the gas exchange lies at {', '.join(f'{low / BAR:.3g}' for low in lows)} bar"
+    if compression is not None:
+        if compression.kind:
+            why = f"as the compression shows: {compression.asked}"
+            return Reference(compression.kind), why, ""
+        levels += f", and {compression.asked}"
     raise UndecidedError(
         f"the file does not say what its pressures are measured from; {levels}", REFERENCES
     )

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from crankmbs.indicated.dead_centre import DeadCentre
 from crankmbs.indicated.findings import CylinderPressure
 from crankmbs.indicated.shape import Shape
 from crankmbs.scene.units import BAR
@@ -20,15 +21,18 @@ _MOVED = 0.01  # of the range: how far a cycle may miss the next one's beginning
 
 
 def sentences_of(
-    cylinder: CylinderPressure, shape: Shape | None, referenced: bool
+    cylinder: CylinderPressure, shape: Shape | None, referenced: bool, *, doubted: bool
 ) -> Iterator[str]:
-    """The sentences of one cylinder."""
+    """The sentences of one cylinder.
+
+    doubted : whether the compression speaks against the reference, and so has no dead centre
+    """
     name = f"cylinder {cylinder.number}"
-    yield _size(cylinder, name)
+    yield _size(cylinder, name, doubted)
     if len(cylinder.pressure) > 1:
         yield _scatter(cylinder, name)
     yield _noise(cylinder, name)
-    yield from _dead_centre(cylinder, name, shape)
+    yield from _dead_centre(cylinder, name, shape, doubted)
     yield from _suspicions(cylinder, name, referenced)
     if cylinder.moved is not None:
         peak, angle, imep = cylinder.moved
@@ -39,15 +43,17 @@ def sentences_of(
         )
 
 
-def _size(cylinder: CylinderPressure, name: str) -> str:
+def _size(cylinder: CylinderPressure, name: str, doubted: bool) -> str:
     mean = cylinder.mean
     at = cylinder.angle[np.argmax(mean)]
     burns = {True: "fired", False: "motored", None: "fired or motored (not clear which)"}
     work = ""
     if cylinder.imep is not None:
         work = f"; imep {np.mean(cylinder.imep) / BAR:.4g} bar"
-    if cylinder.imep_within is not None:
+    centre = cylinder.dead_centre
+    if centre is not None and cylinder.imep_within is not None and _stands(centre, doubted):
         low, high = (imep / BAR for imep in cylinder.imep_within)
+        work += "" if centre.low <= 0.0 <= centre.high else " with the file's dead centre"
         work += f", from {low:.4g} to {high:.4g} bar with the dead centre where it may lie"
     side = "after" if at >= 0.0 else "before"
     named = "" if cylinder.name == name else f"{cylinder.name}, "
@@ -79,7 +85,14 @@ def _noise(cylinder: CylinderPressure, name: str) -> str:
     return f"{text}; a cycle ends {cylinder.closure / BAR:.2g} bar off the beginning of the next"
 
 
-def _dead_centre(cylinder: CylinderPressure, name: str, shape: Shape | None) -> Iterator[str]:
+def _stands(centre: DeadCentre, doubted: bool) -> bool:
+    """Whether a dead centre has a basis: a motored peak, or a reference that is not doubted."""
+    return centre.motored or not doubted
+
+
+def _dead_centre(
+    cylinder: CylinderPressure, name: str, shape: Shape | None, doubted: bool
+) -> Iterator[str]:
     centre = cylinder.dead_centre
     if centre is None:
         needs = "a reference that makes its pressures absolute"
@@ -88,6 +101,13 @@ def _dead_centre(cylinder: CylinderPressure, name: str, shape: Shape | None) -> 
         yield (
             f"{name}: the dead centre is not checked: in a fired cycle the compression shows it, "
             f"which takes {needs}"
+        )
+        return
+    if not _stands(centre, doubted):
+        yield (
+            f"{name}: the dead centre is not checked: its compression would show it "
+            f"{centre.middle:+.2f} +- {centre.half:.2f} degrees from the file's, were the "
+            "pressures absolute; check the reference first"
         )
         return
     angle = cylinder.firing + centre.middle

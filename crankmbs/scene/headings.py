@@ -54,6 +54,12 @@ _SPELT = {
     "bars": "bar",
 }
 _REFERENCED = re.compile(r"(bar|psi|kpa|mpa|mbar)[ _]?\(?([ag])(?:bs|auge)?\)?")
+_REFERENCES = {  # words of a name
+    "absolute": re.compile(r"(?<![^\W\d_])(abs|absolute?|absolutdruck)(?![^\W\d_])", re.IGNORECASE),
+    "gauge": re.compile(
+        r"(?<![^\W\d_])(gauge|rel|relativ|relative|(ü|ue)berdruck)(?![^\W\d_])", re.IGNORECASE
+    ),
+}
 _DEGREES = {"deg", "°", "degca", "deg ca", "°ca", "ca", "cad", "°kw", "grad", "degree", "degrees"}
 _DEGREES |= {"°crk", "deg crk", "degcrk", "°ka", "kw", "deg crank", "dega", "ºca", "º"}
 _ANGULAR = {**dict.fromkeys(_DEGREES, DEGREE), "rad": 1.0, "rev": 2.0 * math.pi}
@@ -78,7 +84,7 @@ _MOST = 10_000  # columns that a range names
 class Heading(NamedTuple):
     """What stands above a column: its name without its unit, and the unit in small letters.
 
-    reference : "absolute" or "gauge" where the unit says so, as bar(a) does
+    reference : "absolute" or "gauge" where the unit says so, as bar(a) does, or a word of the name
     """
 
     name: str
@@ -96,8 +102,9 @@ def headings_of(above: Sequence[Sequence[str]], width: int) -> tuple[Heading, ..
 
     Names stand in the row that has that of a crank angle, else above the units, else in the last
     that has a word for every column; a row of numbers of cycles below the names belongs to them.
+    A row is of units by some of its cells: what else is measured may have any unit.
 
-    >>> headings_of([["CA", "PCYL1"], ["deg", "bar"]], 2)[1]
+    >>> headings_of([["CA", "PCYL1", "TOIL"], ["deg", "bar", "degF"]], 3)[1]
     Heading(name='PCYL1', unit='bar', reference='')
     """
     rows = [_wide(row, width) for row in above]
@@ -106,7 +113,7 @@ def headings_of(above: Sequence[Sequence[str]], width: int) -> tuple[Heading, ..
         end -= 1
     near = range(max(end - _ROWS, 0), end)
     full = [k for k in near if _given(rows[k]) >= min(width, 2)]
-    under = next((k for k in reversed(near) if _is_units(rows[k])), None)
+    under = _units_at(rows, near, full)
     units = [""] * width if under is None else rows[under]
     named = [k for k in full if k != under and _has_angle(rows[k], units)]
     at = named[-1] if named else (end if under is None else under) - 1
@@ -262,11 +269,57 @@ def _is_unit(text: str) -> bool:
     return unit in PRESSURE_UNITS or unit in _ANGULAR or unit in TIME_UNITS or unit in _NO_UNITS
 
 
-def _is_units(row: Sequence[str]) -> bool:
-    """Whether a row has units, one of them of an angle, a time or a pressure."""
-    telling = [cell for cell in row if _unit(cell)[0] not in _NO_UNITS]
-    named = [cell for cell in telling if cell not in ("CA", "KW", "Grad")]
-    return bool(named) and all(map(_is_unit, row))
+def _units_at(rows: Sequence[Sequence[str]], near: range, full: Sequence[int]) -> int | None:
+    """The place of the row of units: the last that is one in itself, else the last that has those
+    of the names in another row."""
+    alone = (k for k in reversed(near) if _are_units(rows[k]))
+    beside = (
+        k for k in reversed(full) if any(_are_units_of(rows[j], rows[k]) for j in full if j != k)
+    )
+    return next(alone, next(beside, None))
+
+
+def _are_units(row: Sequence[str]) -> bool:
+    """Whether a row has nothing but known units, or those of two quantities among others."""
+    telling = _telling(row)
+    of = {_quantity(cell) for cell in telling}
+    return len(of) > 1 or (bool(telling) and all(map(_is_unit, row)))
+
+
+def _telling(row: Sequence[str]) -> list[str]:
+    """The cells that are units of an angle, a time or a pressure, and no names; none of a row that
+    gives a value, as "ambient, 1.02, bar" does."""
+    if any(re.fullmatch(r"[+-]?[0-9.,]+", cell) for cell in row if cell != "1"):
+        return []
+    units = [cell for cell in row if _is_unit(cell) and _unit(cell)[0] not in _NO_UNITS]
+    return [cell for cell in units if cell not in ("CA", "KW", "Grad")]
+
+
+def _are_units_of(names: Sequence[str], row: Sequence[str]) -> bool:
+    """Whether a row with cells that are no known units has those of these names: most are known, or
+    one stands in the column of a name of its quantity."""
+    telling = _telling(row)
+    if not _are_words([name for name in names if name]):
+        return False
+    known = [cell for cell in row if cell not in ("", "-", "1") and _is_unit(cell)]
+    if telling and len(known) > 1 and 2 * len(known) > _given(row):
+        return True
+    return any(
+        cell in telling
+        and (_heading(name, "").unit == _unit(cell)[0] or _names(name) == _quantity(cell))
+        for name, cell in zip(names, row, strict=True)
+    )
+
+
+def _quantity(cell: str) -> str:
+    """What a telling unit is of."""
+    unit = _unit(cell)[0]
+    return "pressure" if unit in PRESSURE_UNITS else "time" if unit in TIME_UNITS else "angle"
+
+
+def _names(name: str) -> str:
+    """The quantity that a name is of, where it is a time or an angle."""
+    return "time" if _is_time_name(name) else "angle" if _is_angle_name(name) else ""
 
 
 def _are_words(row: Sequence[str]) -> bool:
@@ -290,4 +343,7 @@ def _heading(name: str, unit: str) -> Heading:
     elif numbered and not unit:
         text, written = numbered[1] + numbered[numbered.re.groups], numbered[numbered.re.groups - 1]
     plain, reference = _unit(written)
+    if not reference and plain not in TIME_UNITS and plain not in _ANGULAR:
+        named = [kind for kind, word in _REFERENCES.items() if word.search(text)]
+        reference = named[0] if len(named) == 1 else ""
     return Heading(text, plain, reference)
