@@ -34,7 +34,7 @@ from crankmbs.motion import events as kept
 from crankmbs.motion.account import Rows, beside
 from crankmbs.motion.base import State
 from crankmbs.report.machine import describe
-from crankmbs.result.event_words import event_words
+from crankmbs.result.event_words import marks
 from crankmbs.scene.parts import Friction
 from crankmbs.scene.write import scene_files
 
@@ -90,7 +90,7 @@ def test_a_load_is_called_by_its_name(tmp_path):
     result = simulate(written)
     for each in (result, Result.load(result.save(tmp_path))):
         assert each.events["text"].values[1] == "torque[1], starter, ends at 190.986 rpm"
-        assert event_words(each) == ["starter on", "starter off"]
+        assert [mark.words for mark in marks(each)] == ["starter on", "starter off"]
     with pytest.raises(InputError, match="torque__1__name: must be a str"):
         STARTER.with_(torque__1__name=3)
 
@@ -112,11 +112,11 @@ def test_rest_start_and_reversal_by_closed_form(formulation):
     ]
 
 
-def test_the_command_names_the_first_firing_and_the_fuel_cut(tmp_path, monkeypatch):
+def test_the_command_names_the_first_and_the_last_firing(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name, until, event in (
-        ("run_up", "0.1 s", "180 deg, 272.632 rpm: first firing"),
-        ("run_down", "0.3 s", "1620 deg, 1413.55 rpm: fuel cut"),
+        ("run_up", "0.15 s", "0.131393 s, 360 deg, 243.578 rpm: first firing"),
+        ("run_down", "0.3 s", "0.219431 s, 1620 deg, 1413.55 rpm: last firing"),
     ):
         said = crankmbs_("run", name, "--until", until, "--no-figures").stdout
         assert event in said

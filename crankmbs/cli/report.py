@@ -97,8 +97,8 @@ def _about(result: Result, measures: Measures) -> str:
 
 def _events(result: Result) -> list[str]:
     """How many events there are, and the first of them; of decisions on the fuel only the first
-    that fires and the cut, or all where they are all there is."""
-    from crankmbs.result.event_words import event_words
+    and the last firing, or all where they are all there is."""
+    from crankmbs.result.event_words import did_not_fire, marks
 
     events = result.event_table
     fuel = events.values("kind") == "fuel"
@@ -107,17 +107,18 @@ def _events(result: Result) -> list[str]:
         return []
     decided = f", {np.count_nonzero(fuel)} of them decisions on the fuel" if fuel.any() else ""
     lines = [f"{count}{decided}{'; ' if left_out else ''}{left_out}"]
-    words = event_words(result)
-    rows = np.array([k for k in range(count) if words[k]] or range(count))
-    for row in rows[:_FIRST].tolist():
-        time, angle, speed = (
-            float(events.values(name)[row]) for name in ("time", "crank_angle", "crank_speed")
-        )
+    columns = ("time", "crank_angle", "crank_speed", "text")
+    rows = [(*mark[:3], mark.text) for mark in marks(result)]
+    rows = rows or list(zip(*(events.values(name).tolist() for name in columns), strict=True))
+    for time, angle, speed, text in rows[:_FIRST]:
         where = f"{time:.6g} s, {math.degrees(angle):.6g} deg, {speed / RPM:.6g} rpm"
-        event = words[row] if fuel[row] else ""
-        lines.append(f"{where}: {event or events.values('text')[row]}")
+        lines.append(f"{where}: {text}")
     lines += ["..."] if len(rows) > _FIRST else []
-    return [f"{'' if k else 'events':<12} {line}" for k, line in enumerate(lines)]
+    said = [f"{'' if k else 'events':<12} {line}" for k, line in enumerate(lines)]
+    if did_not_fire(result):
+        why = "the crank reached no firing dead centre with fuel"
+        said.append(f"{'fuel':<12} the engine did not fire: {why}")
+    return said
 
 
 def _error_line(result: Result) -> str:
