@@ -35,7 +35,7 @@ from crankmbs.motion import events as kept
 from crankmbs.motion.account import Rows, beside
 from crankmbs.motion.base import State
 from crankmbs.report.machine import describe
-from crankmbs.result.event_words import event_words
+from crankmbs.result.event_words import marks
 from crankmbs.scene.parts import Friction
 from crankmbs.scene.write import scene_files
 
@@ -91,7 +91,7 @@ def test_a_load_is_called_by_its_name(tmp_path):
     result = simulate(written)
     for each in (result, Result.load(result.save(tmp_path))):
         assert each.events["text"].values[1] == "torque[1], starter, ends at 190.986 rpm"
-        assert event_words(each) == ["starter on", "starter off"]
+        assert [mark.words for mark in marks(each)] == ["starter on", "starter off"]
     with pytest.raises(InputError, match="torque__1__name: must be a str"):
         STARTER.with_(torque__1__name=3)
 
@@ -113,11 +113,11 @@ def test_rest_start_and_reversal_by_closed_form(formulation):
     ]
 
 
-def test_the_command_names_the_first_firing_and_the_fuel_cut(tmp_path, monkeypatch):
+def test_the_command_names_the_first_and_the_last_firing(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name, until, event in (
-        ("run_up", "0.1 s", ["first firing", "0.0617922", "180", "272.632"]),
-        ("run_down", "0.3 s", ["fuel cut", "0.219431", "1620", "1413.55"]),
+        ("run_up", "0.15 s", ["first firing", "0.131393", "360", "243.578"]),
+        ("run_down", "0.3 s", ["last firing", "0.219431", "1620", "1413.55"]),
     ):
         said = crankmbs_("run", name, "--until", until, "--no-figures").stdout
         rows = [re.split(" {2,}", line.strip()) for line in said.splitlines()]

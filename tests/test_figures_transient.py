@@ -1,5 +1,6 @@
 """The figure of a whole run over time: what varies strongly, and what is marked in it."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from crankmbs import Constant, InputError, Run, load_scene, simulate
 from crankmbs.figures import plot, save_figures
 from crankmbs.figures.cycles import varies_strongly
+from crankmbs.result.event_words import marks
 
 pytestmark = pytest.mark.slow
 
@@ -25,14 +27,13 @@ def words(ax):
 
 def test_a_start_is_marked_where_it_happens(start):
     speed, torque = plot(start, "transient").axes
-    assert words(speed) == ["speed table on", "first firing", "speed table off", "fuel cut"]
-    events = start.event_table
-    times, shares = events.values("time"), events.values("share")
-    fired = times[shares > 0.0]
+    assert words(speed) == ["speed table on", "speed table off", "first firing", "last firing"]
     at = {text.get_text(): text.xy[0] for text in speed.texts}
-    assert at["first firing"] == fired[0]
-    assert at["fuel cut"] == times[(shares == 0.0) & (times > fired[-1])][0]
-    assert 0.5 < at["fuel cut"] < 0.6
+    first, last = at["first firing"], at["last firing"]
+    passed = start.interp(time=[first, last]).crank_angle.values
+    assert np.remainder(passed, math.pi) == pytest.approx([0.0, 0.0], abs=1e-6)
+    assert passed[0] == pytest.approx(2.0 * math.pi)
+    assert 0.5 < last < 0.6
     gas, loads = torque.lines[:2]
     sampled = np.isin(gas.get_xdata(), start.sampled("time"))
     assert np.array_equal(gas.get_xdata()[sampled], start.sampled("time"))
@@ -57,7 +58,7 @@ def test_a_crank_that_turns_back_is_drawn_between_its_samples():
 
 def test_an_event_at_the_begin_of_the_first_cycle_is_in_it(start):
     speeds, _ = plot(start, "cycles").axes
-    assert words(speeds) == ["speed table on", "first firing", "speed table off", "fuel cut"]
+    assert words(speeds) == ["speed table on", "speed table off", "first firing", "last firing"]
     assert speeds.texts[0].xy[0] == pytest.approx(0.5)
 
 
@@ -77,26 +78,26 @@ def test_what_happens_after_many_reversals_is_marked():
     assert len(speed.lines) == 2 + 8  # the speed, its zero, and the marks
 
 
-def test_a_crank_that_turns_back_has_its_fuel_cut_and_its_rest_marked():
+def test_a_crank_that_turns_back_has_its_last_firing_and_its_rest_marked():
     speed, _ = plot(simulate(load_scene("run_down")), "transient").axes
-    assert {"fuel cut", "reversal", "rest"} == set(words(speed))
+    assert {"last firing", "reversal", "rest"} == set(words(speed))
 
 
 def test_cycles_are_steps_and_events_stand_in_the_cycle_that_holds_them():
     result = simulate(load_scene("run_down"))
     speeds, pressures = plot(result, "cycles").axes
-    cycles, events = result.cycle_table, result.event_table
+    cycles = result.cycle_table
     count = cycles.length
     imep = cycles.values("imep")[:, 0]
     number, drawn = pressures.lines[0].get_xydata().T
     assert np.array_equal(number[::2], np.arange(count) + 0.5)
     assert np.array_equal(number[1::2], np.arange(count) + 1.5)
     assert drawn == pytest.approx(np.repeat(imep * 1e-5, 2))
-    (cut,) = speeds.texts  # no cycle holds the reversals and the rest
-    assert cut.get_text() == "fuel cut"
-    time = events.values("time")[events.values("share") == 0.0][0]
+    (last,) = speeds.texts  # no cycle holds the reversals and the rest
+    assert last.get_text() == "last firing"
+    (time,) = (mark.time for mark in marks(result) if mark.words == "last firing")
     begin, duration = cycles.values("time")[2], cycles.values("duration")[2]
-    assert cut.xy[0] == 2.5 + (time - begin) / duration
+    assert last.xy[0] == 2.5 + (time - begin) / duration
     assert speeds.lines[0].get_color() not in [line.get_color() for line in pressures.lines]
 
 

@@ -239,7 +239,7 @@ def test_events_stand_at_their_times_with_words_that_do_not_touch(browser, files
     with film(browser, files["run_up"], size=size) as visited:
         events = visited.page.locator("#upper .events")
         assert events.locator("text").all_text_contents() == [
-            "speed table on", "first firing", "speed table off", "constant on",
+            "speed table on", "speed table off", "first firing", "constant on",
         ]  # fmt: skip
         found = [each.bounding_box() for each in events.locator("text").all()]
         for k, one in enumerate(found):
@@ -252,7 +252,7 @@ def test_events_stand_at_their_times_with_words_that_do_not_touch(browser, files
         slide(visited, 3.0)
         at = float(visited.page.get_attribute("#upper .cursor line", "x1"))
         assert min(abs(at - line) for line in lines) < 0.01
-        assert "first firing at 0.062 s" in visited.page.get_attribute("#upper svg", "aria-label")
+        assert "first firing at 0.131 s" in visited.page.get_attribute("#upper svg", "aria-label")
 
 
 def test_the_plot_leaves_room_for_words_and_says_its_scales(browser, files):

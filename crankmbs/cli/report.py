@@ -98,8 +98,8 @@ def _about(result: Result, measures: Measures) -> str:
 
 def _events(result: Result) -> list[str]:
     """How many events there are, and the first of them; of decisions on the fuel only the first
-    that fires and the cut, or all where they are all there is."""
-    from crankmbs.result.event_words import event_words
+    and the last firing, or all where they are all there is."""
+    from crankmbs.result.event_words import did_not_fire, marks
 
     events = result.event_table
     fuel = events.values("kind") == "fuel"
@@ -107,19 +107,21 @@ def _events(result: Result) -> list[str]:
     if count == 0 and not left_out:
         return []
     decided = f", {np.count_nonzero(fuel)} of them decisions on the fuel" if fuel.any() else ""
-    said = f"{'events':<12} {count}{decided}{'; ' if left_out else ''}{left_out}"
-    words = event_words(result)
-    rows = np.array([k for k in range(count) if words[k]] or range(count))
-    lines = []
-    for row in rows[:_FIRST].tolist():
-        time, angle, speed = (
-            float(events.values(name)[row]) for name in ("time", "crank_angle", "crank_speed")
-        )
-        event = (words[row] if fuel[row] else "") or str(events.values("text")[row])
-        lines.append([event, *(f"{x:.6g}" for x in (time, math.degrees(angle), speed / RPM))])
+    said = [f"{'events':<12} {count}{decided}{'; ' if left_out else ''}{left_out}"]
+    columns = ("time", "crank_angle", "crank_speed", "text")
+    rows = [(*mark[:3], mark.text) for mark in marks(result)]
+    rows = rows or list(zip(*(events.values(name).tolist() for name in columns), strict=True))
+    lines = [
+        [text, *(f"{x:.6g}" for x in (time, math.degrees(angle), speed / RPM))]
+        for time, angle, speed, text in rows[:_FIRST]
+    ]
     shown = table(_EVENT_HEADINGS, lines).splitlines() if lines else []
-    shown += ["..."] if len(rows) > _FIRST else []
-    return [said, *(f"{'':<12} {line}" for line in shown)]
+    shown += ["... (all in events.csv)"] if len(rows) > _FIRST else []
+    said += [f"{'':<12} {line}" for line in shown]
+    if did_not_fire(result):
+        why = "the crank reached no firing dead centre with fuel"
+        said.append(f"{'fuel':<12} the engine did not fire: {why}")
+    return said
 
 
 def _error_line(result: Result) -> str:

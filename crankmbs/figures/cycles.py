@@ -25,7 +25,7 @@ from crankmbs.measures.peaks import torque_of_rods
 from crankmbs.motion.labels import Table
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
-from crankmbs.result.event_words import event_words
+from crankmbs.result.event_words import Mark, marks
 from crankmbs.scene.units import BAR, RPM
 
 __all__ = ["FEWEST_CYCLES", "cycles_figure", "mark_events", "transient_figure", "varies_strongly"]
@@ -68,7 +68,8 @@ def cycles_figure(result: Result) -> Figure:
                 axes[1].plot(edges, np.repeat(imep[:, group[0]], 2), **line, label=label)
         keep_flat(axes[1], np.concatenate([cycles.values(name) / BAR for name in names]))
         axes[1].set_ylabel("indicated mean\neffective pressure [bar]")
-    mark_events(axes[0], result, _among(result.event_table.values("time"), cycles))
+    named = marks(result)
+    mark_events(axes[0], named, _among(np.array([mark.time for mark in named]), cycles))
     for ax in axes:
         ax.locator_params("x", integer=True)
     axes[-1].set_xlabel("cycle")
@@ -89,39 +90,38 @@ def _among(time: Array, cycles: Table) -> Array:
     return np.where(inside, cycles.values("cycle")[k] - 0.5 + share, np.nan)
 
 
-def mark_events(ax: Axes, result: Result, at: Array) -> None:
-    """Thin labelled lines at the first events of a run: of decisions on the fuel the first that
-    fires and the one that cuts it; events of one kind so close that their words would cover one
-    another are named once.
+def mark_events(ax: Axes, named: list[Mark], at: Array) -> None:
+    """Thin labelled lines at the first marks of a run, each word at least once; those of one word
+    so close that their words would cover one another are named once.
 
-    at : shape (events,), where each stands on the panel's axis
+    at : shape (n,), where each stands on the panel's axis
     """
     low, high = ax.get_xlim()
-    words = event_words(result)
-    inside = [k for k, word in enumerate(words) if word and low <= at[k] <= high]
+    words = [mark.words for mark in named]
+    inside = [k for k in range(len(named)) if low <= at[k] <= high]
     often = {k: [words[j] for j in inside if j < k].count(words[k]) for k in inside}
     shown = sorted(sorted(inside, key=often.__getitem__)[:_MOST_MARKS])  # each word at least once
     if shown:
         bottom, top = ax.get_ylim()
         ax.set_ylim(bottom, top + _HEAD * (top - bottom))
-    named: dict[str, float] = {}
+    labelled: dict[str, float] = {}
     for k in shown:
         ax.axvline(at[k], color="0.35", linewidth=0.9, linestyle=":", zorder=1)
-        if abs(named.get(words[k], np.inf) - at[k]) < _LABEL * (high - low):
+        if abs(labelled.get(words[k], np.inf) - at[k]) < _LABEL * (high - low):
             continue
         left = at[k] > high - _LABEL * (high - low)
         ax.annotate(
             words[k],
             (at[k], 1.0),
             xycoords=("data", "axes fraction"),
-            xytext=(-2 if left else 2, -12 * (1 + len(named) % 4)),
+            xytext=(-2 if left else 2, -12 * (1 + len(labelled) % 4)),
             textcoords="offset points",
             horizontalalignment="right" if left else "left",
             fontsize=9,
             color="0.35",
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8},
         )
-        named[words[k]] = float(at[k])
+        labelled[words[k]] = float(at[k])
 
 
 def varies_strongly(result: Result) -> bool:
@@ -146,7 +146,8 @@ def transient_figure(result: Result) -> Figure:
         ax.axhline(0.0, color="0.55", linewidth=1.0)
         ax.tick_params(labelbottom=ax is axes[-1])
     if result.keep is not None:
-        mark_events(axes[0], result, result.event_table.values("time"))
+        named = marks(result)
+        mark_events(axes[0], named, np.array([mark.time for mark in named]))
     axes[-1].set_xlabel("time [s]")
     legend(figure, axes[1])
     figure.align_ylabels(axes)

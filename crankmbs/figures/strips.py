@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
@@ -25,6 +27,7 @@ from crankmbs.figures.style import (
 from crankmbs.figures.view import View, over_time
 from crankmbs.measures.peaks import torque_of_rods
 from crankmbs.numerics.arrays import Array
+from crankmbs.result.event_words import marks
 from crankmbs.scene.units import BAR, RPM
 
 __all__ = [
@@ -53,9 +56,9 @@ def speed_figure(view: View) -> Figure:
         _speed(axes[0], time if in_time else np.degrees(angle) / 360.0, speed)
         axes[0].set_xlabel(f"{'time [s]' if in_time else 'crank angle [rev]'}, whole run")
         if view.result.keep is not None:
-            events = view.result.event_table
-            turned = np.degrees(events.values("crank_angle")) / 360.0
-            mark_events(axes[0], view.result, events.values("time") if in_time else turned)
+            named = marks(view.result)
+            at = [mark.time if in_time else mark.crank_angle / math.tau for mark in named]
+            mark_events(axes[0], named, np.array(at))
         mark_points(axes[0])
     _speed(axes[-1], *view.drawn(view.along, view.values("crank_speed")))
     crank_axis(axes[-1:], view)

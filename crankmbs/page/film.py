@@ -15,7 +15,7 @@ from crankmbs.numerics.arrays import Array, Index
 from crankmbs.page.export import machine
 from crankmbs.page.film_words import Idea, idea_of
 from crankmbs.result import Result
-from crankmbs.result.event_words import event_words
+from crankmbs.result.event_words import marks
 from crankmbs.scene.run import Extent
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import RPM
@@ -169,12 +169,11 @@ def _pressures(motion: Motion) -> dict[str, Array]:
 
 def _marks(result: Result) -> list[dict[str, Any]]:
     """When the events happen that have a name, the first of each before others."""
-    words = event_words(result)
-    named = [k for k, word in enumerate(words) if word]
-    often = {k: [words[j] for j in named if j < k].count(words[k]) for k in named}
-    shown = sorted(sorted(named, key=often.__getitem__)[:_MARKS])
-    times = result.event_table.values("time")
-    return [{"time": float(times[k]), "words": words[k]} for k in shown]
+    named = marks(result)
+    words = [mark.words for mark in named]
+    often = [words[:k].count(word) for k, word in enumerate(words)]
+    shown = sorted(sorted(range(len(named)), key=often.__getitem__)[:_MARKS])
+    return [{"time": named[k].time, "words": words[k]} for k in shown]
 
 
 def _fuel(result: Result) -> dict[str, Array] | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from crankmbs.result import Result
-from crankmbs.result.event_words import event_words
+from crankmbs.result.event_words import marks
 from crankmbs.scene.fuel import Governor
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import RPM
@@ -71,7 +71,7 @@ def idea_of(result: Result, *, fuel_varies: bool) -> Idea:
     >>> idea_of(simulate(load_scene("run_down")), fuel_varies=True).question
     'Why does the crank stop where it does?'
     """
-    scene, words = result.scene, event_words(result)
+    scene, words = result.scene, [mark.words for mark in marks(result)]
     rests = result.sampled("crank_speed")[-1] == 0.0
     governor = None if scene.fuel is None else scene.fuel.governor
     if fuel_varies and governor is not None and governor.kp + governor.ki > 0.0:
@@ -85,7 +85,7 @@ def idea_of(result: Result, *, fuel_varies: bool) -> Idea:
         return _UNEVEN if scene.fuel.misfire or scene.fuel.scatter > 0.0 else _FIRES
     if _starts_at_rest(scene) and scene.gas is None:
         return _GATHERS
-    return _MARKED if any(words) else _WHOLE
+    return _MARKED if words else _WHOLE
 
 
 def _starts_at_rest(scene: Scene) -> bool:
