@@ -5,9 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crankmbs import Run, load_scene, simulate
+from crankmbs import Constant, Run, SpeedTable, Table, load_scene, simulate
 from crankmbs.measures import peaks
-from crankmbs.measures.peaks import run_peaks
+from crankmbs.measures.names import values_of
+from crankmbs.measures.peaks import quantities_of, run_peaks
+from crankmbs.report.rows import peak_rows
 
 ENGINE = load_scene("torque_driven")  # from rest, faster and faster
 
@@ -35,6 +37,31 @@ def test_no_reading_of_the_run_lies_beyond_a_peak(result):
         assert found[name].time == pytest.approx(data["time"].values[k], abs=1e-4), name
         there = result.interp(time=found[name].time)["crank_angle"].values[0]
         assert found[name].crank_angle == pytest.approx(there, abs=1e-6)
+
+
+def test_the_motor_and_the_work_of_a_press_have_peaks():
+    """The motor's torque falls with the speed; the work is largest at a row of its table."""
+    motor = SpeedTable(file=Table((0.0, 12.0), (3000.0, 0.0)))
+    press = load_scene("validation/scenes/press.toml")
+    result = simulate(press.with_(torque=(motor,), run__until="settled"))
+    values = {name: each[0].value for name, each in values_of(result.measures()).items()}
+    slow, fast = (250.0 * (12.0 - values[f"{word}_speed"]) for word in ("lowest", "highest"))
+    assert values["external_torque_max"] == pytest.approx(slow, rel=1e-7)
+    assert values["external_torque_min"] == pytest.approx(fast, rel=1e-7)
+    force = np.abs(result.data["applied_force"].values)
+    assert force.max() <= values["applied_force"] <= 1.01 * force.max()
+    words = {row[0]: row[1] for row in peak_rows(result.measures())}
+    assert float(words["torque of loads and drive, max [N m]"]) == pytest.approx(slow, rel=1e-5)
+    assert float(words["|applied force| [N]"]) == pytest.approx(values["applied_force"], rel=1e-5)
+
+
+def test_a_load_that_never_changes_has_no_peak():
+    braked = load_scene("propeller").with_(torque=(Constant(torque=-20.0),))
+    names = [quantity.name for quantity in quantities_of(braked)]
+    assert not [name for name in names if "drive" in name]
+    starter = Constant(torque=30.0, until="0.2 s")
+    names = [each.name for each in quantities_of(braked.with_(torque=(starter,)))]
+    assert "torque of loads and drive, max" in names
 
 
 @pytest.mark.parametrize("rtol", [1e-3, 1e-6])

@@ -63,6 +63,9 @@ def measure(machine: Machine, pairs: Pairs) -> tuple[Numbers, Numbers]:
     ):
         errors[name] += column
     errors["fluctuation"] += missed[:, -2:].sum(axis=1) / np.abs(answer["mean_speed"])
+    steepest = np.abs(pairs.cases.c1) + 2.0 * np.abs(pairs.cases.c2) * answer["fast"]
+    for name in ("external_torque_max", "external_torque_min"):
+        errors[name] += steepest * missed[:, -2:].sum(axis=1)
     errors["peaks"] += missed[:, :-4]
     for numbers, sense in ((answer, machine.sense), (errors, 1.0)):
         extremes = [sense * numbers[name] for name in ("fast", "slow")]
@@ -159,9 +162,21 @@ def _numbers(
         "crank_torque": (share * rods).sum(axis=(1, 2)) / turned,
         "external_torque": (share * load).sum(axis=(1, 2)) / turned,
     }
+    numbers |= _torques_between(cases, machine.sense, (slowest, fast))
     numbers["kinetic_power"] = (courses.ends[:, -1] - courses.begin) / time
     numbers["brake_power"] = -numbers["external_torque"] * mean
     return numbers | _powers(machine, tables, numbers["duration"]), peaks
+
+
+def _torques_between(cases: Cases, sense: float, ends: tuple[Array, Array]) -> Numbers:
+    """The largest and the least torque [N m] of loads c0 + c1 omega + c2 omega^2 between two
+    speeds [rad/s], without sense, each of shape (k,)."""
+    c0, c1, c2 = cases.c0, sense * cases.c1, cases.c2
+    with np.errstate(divide="ignore", invalid="ignore"):
+        vertex = np.nan_to_num(-0.5 * c1 / c2)
+    speeds = np.stack([*ends, np.clip(vertex, *ends)])
+    torques = c0 + (c1 + c2 * speeds) * speeds
+    return {"external_torque_max": torques.max(axis=0), "external_torque_min": torques.min(axis=0)}
 
 
 def _gained(solved: Solved, sense: float, mass: Array) -> Array:

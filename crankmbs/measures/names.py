@@ -109,5 +109,7 @@ def angles_of(measures: Measures) -> dict[str, tuple[Angles, ...]]:
 
 def _key(peak: str) -> str:
     """The name of a measure by that of a peak: of torques the same with gas and without."""
-    word = peak.rpartition(", ")[2]
-    return f"torque_{word}" if word in ("max", "min") else "_".join(peak.replace(",", "").split())
+    name, _, word = peak.rpartition(", ")
+    if word in ("max", "min"):
+        return f"{'external_' * name.endswith('drive')}torque_{word}"
+    return "_".join(peak.replace(",", "").split())

@@ -76,9 +76,11 @@ class Peak:
 def quantities_of(scene: Scene) -> tuple[Quantity, ...]:
     """What has peaks in a scene beside the `SPEEDS`: the force of every joint, as
     `crankmbs.measures.joints.joints_of` lists them, the torque of the rods, its largest and least
-    value, and with gas the pressure in every cylinder, of a double-acting one at either end.
+    value, those of loads and drive where they are not constant; under forces from outside the
+    largest on each piston; and with gas the pressure in every cylinder, of a double-acting one at
+    either end.
 
-    >>> [quantity.name for quantity in quantities_of(load_scene("propeller"))][6]
+    >>> [quantity.name for quantity in quantities_of(load_scene("propeller"))][8]
     'gauge pressure'
     """
     phases: dict[int | None, float] = {
@@ -88,10 +90,20 @@ def quantities_of(scene: Scene) -> tuple[Quantity, ...]:
         Quantity(joint.joint, "N", joint.number, phases.get(joint.cylinder), partial(_force, joint))
         for joint in joints_of(scene)
     ]
+    torques = {torque_of_rods(scene): _torque}
+    if not all(load.is_constant for load in scene.torque):
+        torques["torque of loads and drive"] = _external_torque
     quantities += [
-        Quantity(f"{torque_of_rods(scene)}, {word}", "N m", None, None, _torque, sign)
+        Quantity(f"{name}, {word}", "N m", None, None, torque, sign)
+        for name, torque in torques.items()
         for word, sign in (("max", 1.0), ("min", -1.0))
     ]
+    if scene.force:
+        quantities += [
+            Quantity("applied force", "N", number, phase, partial(_applied_force, number))
+            for number, phase in phases.items()
+            if number is not None
+        ]
     ends = {} if scene.gas is None else {"gauge pressure": "gas_pressure"}
     if scene.double_acting:
         ends = {
@@ -180,6 +192,14 @@ def peaks_from(
 
 def _torque(variables: Mapping[str, Array]) -> Array:
     return np.asarray(variables["crank_torque"].sum(axis=1))
+
+
+def _external_torque(variables: Mapping[str, Array]) -> Array:
+    return variables["external_torque"]
+
+
+def _applied_force(cylinder: int, variables: Mapping[str, Array]) -> Array:
+    return np.abs(variables["applied_force"][:, cylinder - 1])
 
 
 def _pressure(name: str, cylinder: int, variables: Mapping[str, Array]) -> Array:

@@ -64,8 +64,8 @@ class Measures:
     kinetic_power [W] : gain of kinetic energy per time, 0 once a motion is periodic
     force_power [W] : what the forces from outside on all pistons give per time, negative where they
         take; None without
-    peaks : of torque and pressures, as `crankmbs.measures.peaks.quantities_of` lists them, then
-        highest and lowest speed
+    peaks : of torques, applied forces and pressures, as `crankmbs.measures.peaks.quantities_of`
+        lists them, then highest and lowest speed
     energy_closure : max |energy residual| / peak kinetic energy over the whole run
     """
 

@@ -196,7 +196,7 @@ def peak_rows(measures: Measures) -> list[list[str]]:
         for joint in measures.joints
     ]
     for top in measures.peaks:
-        name = labelled(top.name, top.number, peaks[top.name], top.units)
+        name = labelled(_words(top), top.number, peaks[top.name], top.units)
         angles = _angles(top.crank_angle, top.cycle_angle, period)
         rows.append([name, *_cells(top.units, top.value), *angles, "", ""])
     return rows
@@ -244,7 +244,7 @@ def _specific(measures: Measures) -> list[list[str]]:
 
 def _words(load: JointForce | Peak) -> str:
     name = load.joint if isinstance(load, JointForce) else load.name
-    return "|side force|" if name == "side force" else name
+    return f"|{name}|" if name in ("side force", "applied force") else name
 
 
 def labelled(name: str, number: int | None, count: int, units: str) -> str:

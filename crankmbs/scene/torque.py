@@ -142,6 +142,11 @@ class Torque(Windowed):
         unknown = function is not None and function.period is None
         return not (varies or self.has_window or unknown)
 
+    @property
+    def is_constant(self) -> bool:
+        """Whether it is the same at every time, angle and speed."""
+        return self.is_steady and all(part is None for part in self.parts[1:])
+
     def __call__(self, t: ArrayLike, theta: ArrayLike, omega: ArrayLike) -> Array:
         """Torque [N m] at times [s], crank angles [rad] and speeds [rad/s] of one shape; on a jump
         that after it.

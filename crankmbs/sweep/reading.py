@@ -156,7 +156,7 @@ def _keys(name: str, long_name: str) -> set[frozenset[str]]:
         if "_specific_" not in name:
             keys |= {key - {"peak"} for key in keys}
         keys |= {key | {"force"} for key in keys}
-    elif name.startswith(("gauge_pressure", "torque_")):
+    elif name.startswith(("gauge_pressure", "torque_", "external_torque_", "applied_")):
         keys |= {key | {"peak"} for key in keys}
     return keys
 
