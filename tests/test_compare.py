@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from crankmbs import Crank, Motion, Piston, Rod, Run, Scene, compare, load_scene, simulate
-from crankmbs.compare import CLOSED_FORM, LECTURES, QUANTITIES, percent, save_comparison
+from crankmbs.compare import CLOSED_FORM, LECTURES, QUANTITIES, percent, save_comparison, short_name
 from crankmbs.compare.size import size_of
 from crankmbs.errors import InputError
 from crankmbs.lecture import datum_shift
@@ -220,8 +220,21 @@ def test_a_crank_at_rest_is_compared_but_for_what_is_zero():
 def test_what_does_not_exist_is_named(yi):
     with pytest.raises(InputError, match="cylinder must be from 1 to 1; 2 came"):
         compare(yi, cylinder=2)
-    with pytest.raises(InputError, match="no 'thrust' against 'closed form' here; quantities"):
+    with pytest.raises(InputError, match=r'no "thrust" here; did you mean "side thrust"[?] The'):
         compare(yi).row("thrust")
+    known = r'"Greg" here; did you mean "Grega"[?] There are "Grega", "closed form", "untruncated l'
+    with pytest.raises(InputError, match=known):
+        compare(yi).row("side thrust", "Greg")
+
+
+def test_a_row_is_taken_by_what_its_table_says(yi):
+    comparison = compare(yi)
+    names = {short_name(row.reference): row.reference for row in comparison.rows}
+    assert len(names) == 4
+    for printed, name in names.items():
+        row = comparison.row("side thrust", name)
+        assert comparison.row("side thrust [N]", printed) is row
+        assert row.reference == name
 
 
 def test_the_file_says_what_the_rows_say(yi, tmp_path):

@@ -98,3 +98,51 @@ def test_a_measure_that_is_zero_has_a_derivative_and_no_share():
     done = crankmbs_("sensitivity", "yi_diesel", *words)
     assert done.exit_code == 0, done.output
     assert re.search(r"drift of the speed \[rpm\] .* -$", done.stdout, re.MULTILINE)
+
+
+@pytest.mark.parametrize("name", ["yi_diesel", "steam_engine", "friction", "misfire"])
+def test_a_refusal_lists_the_names_that_are_printed(name):
+    columns = columns_of(load_scene(name), series=False)
+    with pytest.raises(InputError) as caught:
+        reading_of("crank pin peek", columns)
+    hint, _, listed = str(caught.value).partition("There are ")
+    assert hint.endswith('; did you mean "largest crank pin force"? ')
+    names, _, lectured = listed.partition(", and the error of a lecture formula, such as ")
+    words = re.findall('"([^"]+)"', names)
+    readings = [reading_of(each, columns) for each in words]
+    assert readings[0].column == "crank_pin_peak"
+    for each, reading in zip(words, readings, strict=True):
+        assert reading.about.long_name.startswith(each)
+    errors = {key.removesuffix("_error") for key in columns if key.endswith("_error")}
+    measures = {key for key in errors if key in columns} - {"lecture_deviation", "relative"}
+    assert sorted(reading.column for reading in readings) == sorted(measures)
+    assert bool(lectured) == ("lecture_deviation" in columns)
+    if lectured:
+        assert reading_of(lectured.strip('"'), columns).quantity == "side thrust"
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("side thrust by Greg", 'no lecture; did you mean "Grega"? There are "Grega", "untruncate'),
+        (
+            "side thurst by Yi",
+            'is for "side thurst"; did you mean "side thrust"? There are "side',
+        ),
+    ],
+)
+def test_a_lecture_or_its_formula_that_there_is_not_is_refused(words, said):
+    with pytest.raises(InputError, match=re.escape(said)):
+        reading_of(words, columns_of(load_scene("yi_diesel"), series=False))
+
+
+def test_an_option_is_named_where_its_measure_is_unknown(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    scene = load_scene("coasting").with_(run__until="1 rev")
+    sweep(scene, {"crank.inertia": [0.2, 0.3]}, out="s.zarr")
+    for words, option in ((["--show", "foo"], "--show foo: "), (["--over", "foo"], "--over: ")):
+        done = crankmbs_("plot", "s.zarr", *words)
+        assert done.exit_code == 2
+        assert done.stderr.startswith(
+            f'error: {option}"foo" is no measure of these cases; there ar'
+        )

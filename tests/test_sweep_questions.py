@@ -142,7 +142,7 @@ def test_where_a_peak_bends_a_sensitivity_knows_nothing(monkeypatch):
         (lambda: solve(SCENE, {"rod.length": "1..2 m"}, "fluctuation < 1 %"), "is no condition"),
         (
             lambda: solve(SCENE, {"rod.length": "1..2 m"}, "fluctation = 1 %"),
-            '"fluctation" is no measure of these cases; did you mean "fluctuation"? There are flu',
+            '"fluctation" is no measure of these cases; did you mean "coefficient of fluctuation"',
         ),
         (
             lambda: solve(SCENE, {"rod.length": "1..2 m"}, "mean speed = 3 kg"),
@@ -314,7 +314,7 @@ def test_a_sample_is_points_over_each_knob_and_failures_are_counted():
 @pytest.mark.parametrize(
     ("show", "limit", "said"),
     [
-        ("fluctuatoin", None, 'did you mean "fluctuation"?'),
+        ("fluctuatoin", None, 'did you mean "coefficient of fluctuation"?'),
         ("fluctuation", "3 mm", "limit: must be a share"),
         ("peak crank pin force", "1 %", "is no force here"),
         ("friction power", None, "is no measure of these cases"),

@@ -19,7 +19,7 @@ def plot(
     sweep: Annotated[Path, Argument(metavar="SWEEP", help="The folder that sweep wrote.")],
     show: Annotated[
         list[str] | None,
-        Option(help='Such as "peak crank pin force" or "side thrust by S1"; often.'),
+        Option(help='Such as "peak crank pin force" or "side thrust by Grega"; often.'),
     ] = None,
     limit: Annotated[
         str | None, Option(help='Of what is shown, "1 %" or "20 kN": a line is drawn there.')
@@ -54,7 +54,8 @@ def plot(
             drawn[name] = sweep_figure(data, words, limit, over)
         except InputError as error:
             text = str(error).replace("limit: ", "--limit: ", 1)
-            raise InputError(f"--show {words}: {text}") from None
+            at = "--" if text.startswith("over: ") else f"--show {words}: "
+            raise InputError(f"{at}{text}") from None
     with together(folder) as part:
         for name, figure in drawn.items():
             figure.savefig(part / name, format="png")

@@ -10,7 +10,7 @@ import numpy as np
 
 from crankmbs.compare.excerpt import Answer, Excerpt, LeftOut, excerpt_of, vanishing
 from crankmbs.compare.formula import CLOSED_FORM, Formula, formulas_of, variables_of
-from crankmbs.compare.lectured import LECTURES
+from crankmbs.compare.lectured import LECTURES, row_of
 from crankmbs.compare.numbers import NUMBERS, Number
 from crankmbs.compare.quantities import QUANTITIES
 from crankmbs.compare.size import Size
@@ -88,19 +88,13 @@ class Comparison:
         return comparison_html(self)
 
     def row(self, quantity: str, reference: str = CLOSED_FORM) -> Deviation:
-        """The deviation of one quantity from one reference.
+        """The deviation of one quantity from one reference, as tables or files call it.
 
         Raises
         ------
         InputError : there is none
         """
-        for row in self.rows:
-            if (row.quantity, row.reference) == (quantity, reference):
-                return row
-        raise InputError(
-            f"no {quantity!r} against {reference!r} here; quantities: "
-            f"{', '.join(self.simulated)}; references: {', '.join(self.references)}"
-        )
+        return row_of(self.rows, quantity, reference)
 
 
 def compare(

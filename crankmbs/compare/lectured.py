@@ -6,18 +6,20 @@ masses on a massless bar, the crank is a mass at its radius, and there is no gra
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from typing import NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
 from crankmbs import lecture
 from crankmbs.compare.bodies import Bodies, bodies_of
 from crankmbs.compare.quantities import cycle_angles
+from crankmbs.errors import InputError, shown
 from crankmbs.mechanics.axes import axes_of
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
+from crankmbs.scene.sentences import there_are
 
 __all__ = [
     "LECTURES",
@@ -29,8 +31,22 @@ __all__ = [
     "RodForces",
     "lectured",
     "quantities_by",
+    "row_of",
     "short_name",
 ]
+
+
+class _Row(Protocol):
+    """A comparison of one quantity with one reference."""
+
+    @property
+    def quantity(self) -> str: ...
+
+    @property
+    def reference(self) -> str: ...
+
+
+_RowT = TypeVar("_RowT", bound=_Row)
 
 
 class Motion(NamedTuple):
@@ -124,6 +140,29 @@ def short_name(reference: str) -> str:
     ('Grega', 'closed form')
     """
     return _AUTHORS.get(reference, reference)
+
+
+def row_of(rows: Sequence[_RowT], quantity: str, reference: str | None) -> _RowT:
+    """That of a quantity, with its unit or without, by a reference, as tables or files call it, or
+    None, by the lectures.
+
+    Raises
+    ------
+    InputError : there is none
+    """
+    name = quantity.partition(" [")[0]
+    alike = [row for row in rows if row.quantity == name]
+    if not alike:
+        known = there_are(name, list(dict.fromkeys(row.quantity for row in rows)))
+        raise InputError(f"no {shown(quantity)} here{known}")
+    for row in alike:
+        if reference in (row.reference, short_name(row.reference)):
+            return row
+        if reference is None and row.reference in LECTURES:
+            return row
+    known = there_are(reference or "", [short_name(row.reference) for row in alike])
+    by = "the lectures" if reference is None else shown(reference)
+    raise InputError(f"no {shown(quantity)} by {by} here{known}")
 
 
 def lectured(

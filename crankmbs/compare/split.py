@@ -9,11 +9,12 @@ import numpy as np
 
 from crankmbs.compare.chain import CAUSES, REST
 from crankmbs.compare.excerpt import Excerpt, LeftOut
-from crankmbs.compare.lectured import LECTURES
+from crankmbs.compare.lectured import LECTURES, row_of
 from crankmbs.compare.size import Size, percent
 from crankmbs.digits import digits
-from crankmbs.errors import InputError
+from crankmbs.errors import InputError, shown
 from crankmbs.numerics.arrays import Array
+from crankmbs.scene.sentences import there_are
 
 __all__ = ["Budget", "Cause", "Split"]
 
@@ -49,18 +50,17 @@ class Split:
     peak: float
 
     def cause(self, name: str) -> Cause:
-        """One of the causes.
+        """One of the causes, as tables or files call it.
 
         Raises
         ------
         InputError : there is none of this name
         """
         for cause in self.causes:
-            if cause.name == name:
+            if name in (cause.name, self.heading(cause.name)):
                 return cause
-        raise InputError(
-            f"no cause {name!r} here: {', '.join(cause.name for cause in self.causes)}"
-        )
+        known = there_are(name, [self.heading(cause.name) for cause in self.causes])
+        raise InputError(f"no cause {shown(name)} here{known}")
 
     def share(self, cause: Cause) -> float:
         """The peak of a cause in percent of the run's; 0 where it is rounding, NaN where the
@@ -116,6 +116,10 @@ class Split:
         """Whether the formula is the lectures'."""
         return self.reference in LECTURES
 
+    def heading(self, name: str) -> str:
+        """What a cause is called over a column: what a user's formula cuts off is its own."""
+        return "formula" if name == "series" and not self.is_lecture else name
+
     def named(self, cause: Cause) -> str:
         """A cause in words, as they stand in a sentence."""
         if cause.name == "series" and not self.is_lecture:
@@ -154,17 +158,7 @@ class Budget:
         ------
         InputError : there is none
         """
-        for split in self.splits:
-            fits = split.is_lecture if reference is None else split.reference == reference
-            if split.quantity == quantity and fits:
-                return split
-        by = "" if reference is None else f" by {reference!r}"
-        quantities = dict.fromkeys(split.quantity for split in self.splits)
-        references = dict.fromkeys(split.reference for split in self.splits)
-        raise InputError(
-            f"no {quantity!r}{by} here; quantities: {', '.join(quantities)}; formulas: "
-            f"{', '.join(references)}"
-        )
+        return row_of(self.splits, quantity, reference)
 
 
 def _where(cause: Cause) -> str:

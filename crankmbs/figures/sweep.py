@@ -87,7 +87,7 @@ def sweep_figure(
     Parameters
     ----------
     data : as `crankmbs.load_sweep` reads it
-    show : a measure in words, "fluctuation" or "peak crank pin force", or "side thrust by S1"
+    show : a measure in words, "fluctuation" or "peak crank pin force", or "side thrust by Grega"
     limit : of it, "1 %" or "20 kN", where a line is drawn
     over : another measure, "fluctuation", as the axis in place of the knob that was varied last
 

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crankmbs.errors import InputError
+from crankmbs.errors import InputError, shown
 from crankmbs.measures.estimate import ROUNDING
 from crankmbs.measures.nodes import nodes_of
 from crankmbs.measures.span import CYCLES, measured_span, passes_over
 from crankmbs.motion.motion import Motion
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
+from crankmbs.scene.sentences import there_are
 from crankmbs.scene.units import DEGREE
 
 __all__ = ["Harmonics", "Orders", "orders"]
@@ -97,7 +98,9 @@ class Harmonics:
         """The orders of a variable of the result."""
         variables = nodes_of(self.passes.answer, self._widest).variables
         if name not in variables:
-            raise InputError(f"{name!r} is no variable with orders: {', '.join(sorted(variables))}")
+            raise InputError(
+                f"{shown(name)} is no variable with orders{there_are(name, sorted(variables))}"
+            )
         return self.split(lambda v: v[name])
 
     def split(self, quantity: Callable[[Mapping[str, Array]], Array]) -> Orders:

@@ -73,7 +73,7 @@ def budget_table(splits: Sequence[Split], comparison: Comparison | None = None) 
         ]
         rows.append([*row, *([] if comparison is None else [_beside(comparison, split.quantity)])])
     headings = ["quantity", "peak", "error [%]", "at [deg]"]
-    headings += [name if name != "series" or splits[0].is_lecture else "formula" for name in causes]
+    headings += [splits[0].heading(name) for name in causes]
     return Table([*headings, *([] if comparison is None else [f"{short_name(_S0)} [%]"])], rows)
 
 

@@ -17,7 +17,7 @@ from pydantic import ValidationError
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.examples import example_of
 
-__all__ = ["RULES", "PartError", "did_you_mean", "sentence"]
+__all__ = ["RULES", "PartError", "did_you_mean", "sentence", "there_are"]
 
 _CLOSE = 0.7  # where the choices are listed anyway: "spline" is no misspelling of "linear", 0.67
 _BARE_KEY = re.compile(r"[\w-]{1,60}")
@@ -91,6 +91,21 @@ def did_you_mean(word: str, known: Sequence[str], least: float = 0.6) -> str:
     """The way out of a misspelling, or nothing when no known word is near: difflib's ratio."""
     close = difflib.get_close_matches(word, known, n=1, cutoff=least)
     return f'; did you mean "{close[0]}"?' if close else ""
+
+
+def there_are(word: str, known: Sequence[str], spellings: Mapping[str, str] | None = None) -> str:
+    """The way out of an unknown name: every known one, those near to it first.
+
+    spellings : what else a name may be called, to the name
+
+    >>> there_are("mean sped", ["side force", "mean speed"])
+    '; did you mean "mean speed"? There are "mean speed", "side force"'
+    """
+    names = {**(spellings or {}), **{name: name for name in known}}
+    close = difflib.get_close_matches(word, names, n=3)
+    near = list(dict.fromkeys(names[spelling] for spelling in close))
+    listed = ", ".join(f'"{name}"' for name in dict.fromkeys([*near, *known]))
+    return f'; did you mean "{near[0]}"? There are {listed}' if near else f"; there are {listed}"
 
 
 def _rank(kind: str) -> int:

@@ -76,7 +76,7 @@ def sobol_indices(
     Parameters
     ----------
     vary : two ranges or more, {"crank.inertia": "0.05..0.5 kg m^2:log", "rod.length": ...}
-    measures : one or several, "fluctuation", "peak crank pin force", "side thrust by S1"
+    measures : one or several, "fluctuation", "peak crank pin force", "side thrust by Grega"
     n : a power of two
     seed : from which design and resamplings are drawn
     executor : as of `sweep`

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
@@ -12,6 +11,7 @@ import numpy as np
 from crankmbs.compare import LECTURES, QUANTITIES, short_name
 from crankmbs.errors import InputError, shown
 from crankmbs.measures import Estimate
+from crankmbs.scene.sentences import there_are
 from crankmbs.scene.units import quantity
 from crankmbs.sweep.columns import Column, Row
 
@@ -91,7 +91,7 @@ class Reading(NamedTuple):
 def reading_of(text: str, columns: Mapping[str, Column]) -> Reading:
     """What is read of each case: a measure under any name that commands print, with or without its
     unit, such as "fluctuation", "peak crank pin force", "crank pin 2 [N]" or "brake power"; or what
-    a lecture is off by, "side thrust by S1".
+    a lecture is off by, "side thrust by Grega".
 
     Raises
     ------
@@ -103,10 +103,8 @@ def reading_of(text: str, columns: Mapping[str, Column]) -> Reading:
     'main_bearing_peak'
     """
     words = " ".join(_UNIT.sub("", text.replace("_", " ")).split())
-    quantity, by, lecture = words.removeprefix("largest error of ").rpartition(" by ")
-    name = _LECTURES.get(lecture.partition(" ")[0].lower())
-    if by and quantity in QUANTITIES and name and _DEVIATION in columns:
-        return Reading(_DEVIATION, columns[_DEVIATION], name, quantity)
+    if lectured := _by_lecture(text, words, columns):
+        return lectured
     names = [name for name in columns if f"{name}_error" in columns and name != _DEVIATION]
     names = [name for name in names if not name.startswith("series_")]
     known = {key: name for name in names for key in _keys(name, columns[name].long_name)}
@@ -117,14 +115,35 @@ def reading_of(text: str, columns: Mapping[str, Column]) -> Reading:
         return Reading("brake_power", Column("W", "drive power"), sign=-1.0)
     if key in known and (number is None or columns[known[key]].dims):
         return Reading(known[key], columns[known[key]], number=number)
-    listed = [name.replace("_", " ") for name in names]
-    near = difflib.get_close_matches(words, listed, n=3)
-    listed = [*near, *(name for name in listed if name not in near)]
-    hint = f'; did you mean "{near[0]}"? There' if near else "; there"
-    raise InputError(
-        f"{shown(text)} is no measure of these cases{hint} are {', '.join(listed)}, and QUANTITY "
-        "by S1"
-    )
+    printed = {name: _UNIT.sub("", columns[name].long_name).strip(" ,") for name in names}
+    spellings = {name.replace("_", " "): words for name, words in printed.items()}
+    spellings |= {words.replace("largest", "peak"): words for words in printed.values()}
+    listed = there_are(words, list(printed.values()), spellings)
+    if _DEVIATION in columns:
+        listed += ', and the error of a lecture formula, such as "side thrust by Grega"'
+    raise InputError(f"{shown(text)} is no measure of these cases{listed}")
+
+
+def _by_lecture(text: str, words: str, columns: Mapping[str, Column]) -> Reading | None:
+    """The error of a lecture formula, where the words say whose; None where they do not.
+
+    Raises
+    ------
+    InputError : the lecture has no formula for this, or is unknown
+    """
+    quantity, by, lecture = words.removeprefix("largest error of ").rpartition(" by ")
+    if not by or _DEVIATION not in columns:
+        return None
+    name = _LECTURES.get(lecture.partition(" ")[0].lower())
+    if name is None:
+        authors = [short_name(each) for each in LECTURES]
+        raise InputError(
+            f"{shown(text)}: {shown(lecture)} is no lecture{there_are(lecture, authors)}"
+        )
+    if quantity not in QUANTITIES:
+        known = there_are(quantity, list(QUANTITIES))
+        raise InputError(f"{shown(text)}: no lecture formula is for {shown(quantity)}{known}")
+    return Reading(_DEVIATION, columns[_DEVIATION], name, quantity)
 
 
 def is_measure(text: str, columns: Mapping[str, Column]) -> bool:

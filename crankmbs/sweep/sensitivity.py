@@ -56,7 +56,7 @@ def sensitivity(scene: Scene, name: str, measure: str) -> Sensitivity:
     ----------
     name : any number of the scene that is not 0, or "rod_ratio", "gas.shift", "gas.scale",
         "gas.offset"
-    measure : "fluctuation", "peak crank pin force", "side thrust by S1"
+    measure : "fluctuation", "peak crank pin force", "side thrust by Grega"
 
     Raises
     ------

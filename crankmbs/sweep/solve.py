@@ -112,7 +112,7 @@ def solve(scene: Scene, vary: dict[str, str], wanted: str) -> Solved:
     Parameters
     ----------
     vary : one knob and its range, {"crank.inertia": "0.05..0.5 kg m^2:log"}
-    wanted : "fluctuation = 1 %", "peak crank pin force = 20 kN", "side thrust by S1 = 5 %"
+    wanted : "fluctuation = 1 %", "peak crank pin force = 20 kN", "side thrust by Grega = 5 %"
 
     Returns
     -------
