@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import re
 
 import matplotlib as mpl
 import numpy as np
@@ -36,7 +37,7 @@ from crankmbs.figures import (
     torque_figure,
 )
 from crankmbs.figures.polar import draw_polar
-from crankmbs.figures.style import panels
+from crankmbs.figures.style import caption, panels
 
 pytestmark = pytest.mark.slow
 
@@ -328,3 +329,17 @@ def test_a_firing_without_combustion_is_not_said_to_fire():
         fuel = Fuel(misfire=[Misfire(cylinder=1, cycles=misfires)])
         result = simulate(driven(gas=gas, fuel=fuel, until="725 deg"))
         assert set(last_view(result).dead_centre_labels().values()) == labels
+
+
+def test_a_caption_breaks_no_line_before_a_unit_or_an_error():
+    said = (
+        "torque [N m] 43 N m, side force [N] 0.3 +- 3e-6 kN, 0.2 kg m^2 at 20 deg, over 1 rev of 5"
+    )
+    for width in np.arange(2.0, 5.0, 0.1):
+        figure, _ = panels(1, 1, width, 3.0)
+        caption(figure, [said])
+        lines = figure.get_supxlabel().split("\n")
+        assert len(lines) > 1
+        for line in lines:
+            assert not re.match(r"\[|\+-|3e-6|m\b|m\^2|(N|kN|kg|deg|rev)\b", line), lines
+    assert " ".join(lines) == said

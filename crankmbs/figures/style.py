@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import math
+import re
 import textwrap
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -57,6 +58,11 @@ _DASHES = ("-", (0, (6, 2)), (0, (6, 2, 1.5, 2)), (0, (2.5, 1.5)))
 _GREY = "0.55"
 FLAT = 1e-6  # of the mean: what varies less is drawn as constant
 _SAME = 1e-3  # of the range of a panel's curves: less than a pixel of it, a fifth of a line
+_NO_BREAK = "\N{NO-BREAK SPACE}"
+_TOGETHER = re.compile(  # blanks at which a caption has no new line
+    r" (?=\[)|(?<=[\[ ]N|kg) (?=m)| (?=\+- )|(?<=\+-) "
+    r"|(?<=\d) (?=(?:%|deg|rpm|rad|rev|k?W|k?N|N m|bar|J|kg|m?m|m?s)(?!\w))"
+)
 _SMALLER = 2  # points: text at the dead centres and of the caption, than the type of the figure
 _EDGE = 0.06  # of a panel's side: the room that the label of a contour takes
 _FAST = {"compress_level": 3}  # of a PNG: a third less time for a sixth more bytes
@@ -304,13 +310,15 @@ def caption(figure: Figure, lines: Iterable[str]) -> None:
 
 
 def _wrapped(text: str, letters: int) -> list[str]:
-    """Text on as few lines as fit, of about one length."""
-    parts = textwrap.wrap(text, letters, max_lines=3, placeholder=" ...")
-    for width in range(len(text) // len(parts) if parts else letters, letters):
-        even = textwrap.wrap(text, width)
+    """Text on as few lines as fit, of about one length; numbers and names stay with their unit."""
+    whole = _TOGETHER.sub(_NO_BREAK, text)
+    parts = textwrap.wrap(whole, letters, max_lines=3, placeholder=" ...")
+    for width in range(len(whole) // len(parts) if parts else letters, letters):
+        even = textwrap.wrap(whole, width)
         if len(even) == len(parts):
-            return even
-    return parts
+            parts = even
+            break
+    return [part.replace(_NO_BREAK, " ") for part in parts]
 
 
 def one_curve_each(*panels: Array) -> list[list[int]]:
