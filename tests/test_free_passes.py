@@ -53,7 +53,10 @@ ENDS = {
 
 
 @BOTH
-@pytest.mark.parametrize("name", ENDS)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=pytest.mark.slow if name == "swing" else ()) for name in ENDS],
+)
 def test_physical_ends(name, formulation):
     ending, sentence = ENDS[name]
     result = simulate(ending, formulation=formulation)

@@ -90,7 +90,9 @@ def test_friction_and_each_firing_reach_the_journals(name):
         assert float(abs(apart).max()) < 1e-12 * float(abs(bearing).max())
 
 
-@pytest.mark.parametrize("formulation", ["minimal", "multibody"])
+@pytest.mark.parametrize(
+    "formulation", [pytest.param("minimal", marks=pytest.mark.slow), "multibody"]
+)
 def test_every_formulation_agrees_within_what_it_states(formulation):
     one, other = simulate(VEE), simulate(VEE, formulation=formulation)
     for name in ("main_journal_force_x", "main_journal_force_y", "pin_force_x", "pin_force_y"):

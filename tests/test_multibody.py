@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -59,12 +60,9 @@ SCENES = {
 }
 
 
-@pytest.fixture(scope="module")
-def results() -> dict[str, Result]:
-    return {
-        name: simulate(scene, formulation="multibody", rtol=1e-5, cost_cap=60.0)
-        for name, scene in SCENES.items()
-    }
+@cache
+def solved(name: str) -> Result:
+    return simulate(SCENES[name], formulation="multibody", rtol=1e-5, cost_cap=60.0)
 
 
 def true_errors(result: Result, scene: Scene) -> dict[str, tuple[float, float, float]]:
@@ -117,9 +115,9 @@ def test_meets_the_computed_figures_of_the_torque_driven_slider_crank() -> None:
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_every_error_is_honest_and_no_idle_caution(name: str, results: dict[str, Result]) -> None:
-    assert results[name].status == 0
-    errors = true_errors(results[name], SCENES[name])
+def test_every_error_is_honest_and_no_idle_caution(name: str) -> None:
+    assert solved(name).status == 0
+    errors = true_errors(solved(name), SCENES[name])
     assert len(errors) >= 20
     for variable, (true, stated, peak) in errors.items():
         rounded = 1e-13  # the oracle rounds, too
@@ -130,8 +128,8 @@ def test_every_error_is_honest_and_no_idle_caution(name: str, results: dict[str,
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_meets_what_is_asked(name: str, results: dict[str, Result]) -> None:
-    assert results[name].error.estimated <= 1e-5
+def test_meets_what_is_asked(name: str) -> None:
+    assert solved(name).error.estimated <= 1e-5
 
 
 @pytest.mark.parametrize(
@@ -142,12 +140,10 @@ def test_meets_what_is_asked(name: str, results: dict[str, Result]) -> None:
         ("gravity", {"angle": -2.5}),
     ],
 )
-def test_a_shifted_parameter_is_seen(
-    part: str, change: dict[str, float], results: dict[str, Result]
-) -> None:
+def test_a_shifted_parameter_is_seen(part: str, change: dict[str, float]) -> None:
     scene = SCENES["backwards, sampled in time"]
     mutant = replace(scene, **{part: replace(getattr(scene, part), **change)})
-    errors = true_errors(results["backwards, sampled in time"], mutant)
+    errors = true_errors(solved("backwards, sampled in time"), mutant)
     assert any(true > 2.0 * stated for true, stated, _ in errors.values())
 
 
@@ -165,14 +161,14 @@ def test_a_corner_of_the_prescribed_speed_and_a_rest_at_its_end() -> None:
                 assert off <= 2.0 * variable.attrs["error_estimate"], name
 
 
-def test_samples_lie_on_the_grid_and_the_last_at_the_end(results: dict[str, Result]) -> None:
-    in_angle, in_time = results["askew"].data, results["backwards, sampled in time"].data
+def test_samples_lie_on_the_grid_and_the_last_at_the_end() -> None:
+    in_angle, in_time = solved("askew").data, solved("backwards, sampled in time").data
     angle, time = in_angle["crank_angle"].values, in_time["time"].values
     np.testing.assert_allclose(angle[:-1], 0.3 + 0.05 * np.arange(len(angle) - 1), rtol=1e-14)
     np.testing.assert_allclose(time, 1e-3 * np.arange(61), rtol=0.0, atol=1e-17)
     assert in_angle["time"].values[-1] == 0.06
-    for result in results.values():
-        assert np.all(np.diff(result.data["time"].values) > 0.0)
+    for name in SCENES:
+        assert np.all(np.diff(solved(name).data["time"].values) > 0.0)
 
 
 def test_without_output_spacing_the_last_cycle_is_kept_degree_by_degree() -> None:

@@ -20,7 +20,7 @@ from validation.random_page import random_page
 pytestmark = pytest.mark.slow
 
 DRIVEN = [name for name in shipped_scenes() if load_scene(name).motion is not None]
-RANDOM = [seed for seed in range(2000, 2200) if random_page(seed).motion is not None]
+RANDOM = range(2003, 2200, 4)  # of random_page every fourth scene is driven
 HEAVIER = {"friction": 0.02}  # kg m2, the scene has none
 
 

@@ -47,7 +47,7 @@ FAMILIES = {
 }
 """The quantities that a slide shows, one or two side by side, by its name."""
 
-_SHOWN = {"m": (1e-3, "mm"), "m/s^2": (1.0, "m/s$^2$")}  # unit -> divisor and unit on an axis
+_SHOWN = {"m": (1e-3, "mm"), "m/s^2": (1.0, "m/s²")}  # unit -> divisor and unit on an axis
 _UNTRUNCATED, *_TRUNCATED = LECTURES
 _GREGA, _YI = map(short_name, _TRUNCATED)
 _BY_YI = f"formula of {_YI}"

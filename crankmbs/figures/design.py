@@ -83,20 +83,16 @@ def flywheel_figure(wheel: Flywheel, curve: Sequence[tuple[float, float]]) -> Fi
     at, percent = wheel.inertia.value, 100.0 * wheel.fluctuation.value
     formula = [100.0 * work / ((each + wheel.moving) * speed**2) for each in inertia]
     dashes = (0, (5, 3))
-    ax.plot(
-        inertia, formula, color=COLOURS[1], linestyle=dashes, label=r"formula W / (J $\omega^2$)"
-    )
-    ax.plot([at], [percent], "o", color="black", label=f"{percent:.4g} % with {at:.4g} kg m$^2$")
+    ax.plot(inertia, formula, color=COLOURS[1], linestyle=dashes, label="formula W / (J ω²)")
+    ax.plot([at], [percent], "o", color="black", label=f"{percent:.4g} % with {at:.4g} kg m²")
     present = at - wheel.added
     if min(inertia) <= present <= max(inertia):
-        ax.axvline(
-            present, color="0.55", linewidth=1.0, label=f"the scene's {present:.4g} kg m$^2$"
-        )
+        ax.axvline(present, color="0.55", linewidth=1.0, label=f"the scene's {present:.4g} kg m²")
     ax.set_xscale("log")
     ax.set_yscale("log")
     for axis in (ax.xaxis, ax.yaxis):
         logarithmic(axis)
-    ax.set_xlabel("inertia of crank and flywheel [kg m$^2$]")
+    ax.set_xlabel("inertia of crank and flywheel [kg m²]")
     ax.set_ylabel("coefficient of fluctuation [%]")
     legend(figure, ax)
     about = "coefficient of fluctuation of settled cycles over the inertia"

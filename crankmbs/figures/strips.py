@@ -76,7 +76,7 @@ def piston_motion_figure(view: View) -> Figure:
     rows = (
         ("piston_displacement", 1e3, "displacement\nfrom TDC [mm]"),
         ("piston_velocity", 1.0, "velocity towards\nthe crank [m/s]"),
-        ("piston_acceleration", 1.0, "acceleration towards\nthe crank [m/s$^2$]"),
+        ("piston_acceleration", 1.0, "acceleration towards\nthe crank [m/s²]"),
     )
     groups = one_curve_each(*(view.values(name) for name, _, _ in rows))
     for ax, (name, scale, label) in zip(axes, rows, strict=True):
@@ -185,7 +185,7 @@ def indicator_figure(view: View) -> Figure:
             axes[1].plot(volumes[end][:, k], pressure[:, k], **lines[k], label=label)
     axes[0].set_ylabel("gauge pressure [bar]")
     axes[1].set_ylabel("gauge pressure [bar]")
-    axes[1].set_xlabel("volume displaced from TDC [cm$^3$]")
+    axes[1].set_xlabel("volume displaced from TDC [cm³]")
     crank_axis(axes[:1], view)
     legend(figure, axes[0])
     if over_volume != over_angle:
