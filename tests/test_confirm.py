@@ -56,7 +56,7 @@ def test_forces_from_outside_are_the_run_s_where_the_speed_is_prescribed() -> No
     assert all(each.difference < 1e-9 for each in found)
 
 
-@pytest.mark.parametrize("seed", [pytest.param(19, marks=pytest.mark.long), 36])
+@pytest.mark.parametrize("seed", [19, 36])
 def test_between_samples_the_run_errs_by_what_its_passes_differ_by(seed: int) -> None:
     assert confirm(simulate(random_forces(seed))).holds
 
