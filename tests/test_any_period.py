@@ -69,10 +69,8 @@ BY_FUNCTION = Load(taken, kink_angles=ROWS.x[:-1], period=3.0 * TURN)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("halves", "formulation"),
-    [*((halves, "crank_angle") for halves in (1, 3, 6, 7)), (6, "minimal"), (7, "minimal")],
-)
+@pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
+@pytest.mark.parametrize("halves", [1, 3, 6, 7])
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_energy_is_the_work_of_a_sine_of_that_period(halves, formulation, sense):
     period = halves * math.pi
