@@ -74,6 +74,8 @@ from .sweep import (
     sweep,
 )
 
+__version__: str
+
 __all__ = [
     "AngleTable",
     "AtAngle",

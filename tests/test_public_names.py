@@ -8,6 +8,7 @@ import pickle
 import subprocess
 import sys
 import types
+from importlib import metadata
 from pathlib import Path
 
 import pytest
@@ -33,6 +34,12 @@ def test_all_is_sorted_and_what_type_checkers_see():
     ]
     assert isinstance(stub.body[-1], ast.Assign)
     assert sorted(seen) == crankmbs.__all__ == ast.literal_eval(stub.body[-1].value)
+
+
+def test_the_version_is_that_of_the_installation():
+    assert crankmbs.__version__ == metadata.version("crankmbs")
+    with pytest.raises(AttributeError, match="No crankmbs attribute __versions__"):
+        getattr(crankmbs, "__versions__")  # noqa: B009
 
 
 @pytest.mark.parametrize("name", sorted({*crankmbs.__all__} - ROOMS))
