@@ -113,6 +113,21 @@ def misfiring(scene):
     return replace(scene, gas=replace(scene.gas, motored=POLYTROPE), fuel=fuel)
 
 
+def several_cycles():
+    """Of which cells come again, with the same cylinders firing, also under other loads."""
+    scene = running("yi_diesel_free", Extent(value=4.0, unit="cycle"))
+    return misfiring(replace(scene, torque=(*scene.torque, Constant(torque=-20.0, until=0.06))))
+
+
+def even_cells():
+    """Like cylinders at whole cells from one another, in other banks."""
+    first = MACHINE["layout"].cylinders[0]
+    leaning = replace(first, phase=math.pi, bank=0.5, position=0.1)
+    layout = Layout(cylinders=(first, leaning))
+    until = Extent(value=1.2, unit="cycle")
+    return running("coasting", until, layout=layout, gravity=MACHINE["gravity"])
+
+
 def both_ends():
     """Gas below the pistons too, over as long again."""
     scene = running("yi_diesel_free", Extent(value=0.06, unit="s"), **MACHINE)
@@ -178,6 +193,8 @@ GUARDS = {
     "settling": settling(),
     "backwards": backwards(),
     "short rod": short_rod(),
+    "several cycles": several_cycles(),
+    "even cells": even_cells(),
     "affine": running("v_twin", "settled"),
     "rings": rubbing("v_twin", "settled", replace(RUBBING, viscous=0.0), **MACHINE),
     "rubbing": rubbing("propeller", Extent(value=1.2, unit="cycle"), RUBBING),
@@ -242,7 +259,7 @@ def tasks(angles):
     scenes |= {name: GUARDS[name] for name in ("started", "affine", "both ends")}
     for name, scene in scenes.items():
         found[f"carried {name}"] = "carried", {"scene": exported(scene), "shape": shape}
-    for name in ("affine", "started", "pushed"):
+    for name in ("affine", "started", "pushed", "even cells"):
         asked = {"scene": longer(GUARDS[name]), "angles": angles[name][::3]}
         found[f"dragged {name}"] = "dragged", asked
     around = np.linspace(0.2, 12.0, 24)

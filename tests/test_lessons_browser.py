@@ -37,6 +37,16 @@ def test_a_lesson_fits_every_screen(kept, name, size):
         for box in (text.bounding_box() for text in one.locator("svg text.name").all()):
             assert svg["x"] <= box["x"]
             assert box["x"] + box["width"] <= svg["x"] + svg["width"]
+    for one in opened.page.locator(".knob label").all():
+        broad, high = one.evaluate(
+            "(each) => [each.scrollWidth - each.clientWidth,"
+            " each.clientHeight / parseFloat(getComputedStyle(each).fontSize)]"
+        )
+        assert broad <= 0, one.text_content()
+        assert high < 4.0, one.text_content()  # two lines at most
+    for one in opened.page.locator(".idea, footer p").all():
+        letter = one.evaluate("(each) => parseFloat(getComputedStyle(each).fontSize)")
+        assert size == LAPTOP or one.bounding_box()["width"] <= 75.0 * letter
     for one in opened.page.locator(".formula").all():
         inner, outer = one.locator("math").bounding_box(), one.bounding_box()
         assert inner["x"] + inner["width"] <= outer["x"] + outer["width"] + 1.0

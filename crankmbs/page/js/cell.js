@@ -1,7 +1,7 @@
 /** Gauss collocation in one cell of the crank angle: Newton's method on energies at its nodes. */
 import { eliminate } from "./arrays.js";
 import { isAffine, torqueOf } from "./loads.js";
-import { fillSystem, integralTo } from "./rule.js";
+import { fillSystem, integralTo, nodesIn } from "./rule.js";
 import { givenAt, movingAt } from "./tables.js";
 
 export const SLOW = Math.PI / 360; // rad: within which no energy may be gone, or it is refused
@@ -20,11 +20,49 @@ export class Stepper {
     }
     this.right = new Float64Array(2 * s); // of the energies, and of a difference of them
     this.system = new Float64Array(s * s);
+    this.kept = new Map(); // lists by the number of the cell, of each shares
+    this.map = null; // of the cell, if it was kept
+    this.affine = false; // whether its energies are linear in that at its begin
     this.work = this.spent = 0;
+  }
+
+  /** Take a whole cell of the grid, as it was kept if it was solved before. */
+  take(motion, number) {
+    const { branch, firing: { shares }, grid, sense } = motion;
+    const kept = this.kept.get(shares)?.[number];
+    if (kept?.branch !== branch) {
+      this.load(motion, nodesIn(grid, number, sense));
+      return;
+    }
+    this.map = kept.map;
+    for (let j = 0, k = 0; j < this.drag.length; j++) {
+      this.inertia[j] = this.map[k++];
+      this.given[j] = this.map[k++];
+      this.right[2 * j + 1] = this.map[k++];
+      k++;
+      this.drag[j] = 0;
+    }
+  }
+
+  /** Keep of a solved cell, with inertia and torque, by what its energies grow and are shifted, if
+   * they are linear in that at its begin: a run of many cycles meets it again. */
+  keep({ branch, firing: { shares }, energy: begin }, number) {
+    if (!this.affine || this.map) return;
+    if (!this.kept.has(shares)) this.kept.set(shares, []);
+    const map = new Float64Array(4 * this.energy.length);
+    for (let j = 0, k = 0; j < this.energy.length; j++) {
+      const gain = this.right[2 * j + 1];
+      map[k++] = this.inertia[j];
+      map[k++] = this.given[j];
+      map[k++] = gain;
+      map[k++] = this.energy[j] - gain * begin;
+    }
+    this.kept.get(shares)[number] = { branch, map };
   }
 
   /** Take what the crank train is at the nodes, `movingAt` each, in the order they are passed. */
   load({ train, phases, firing: { shares }, sense }, nodes) {
+    this.map = null;
     nodes.forEach((of, j) => {
       this.inertia[j] = train.crank.inertia + of.inertia;
       this.given[j] = givenAt(train, of, { shares, phases, sense }, 0);
@@ -41,7 +79,23 @@ export class Stepper {
 
   /** Solve the cell of a signed width from a motion's state on; whether that converges. */
   solve({ energy: begin, time, sense, branch }, width) {
-    const { rule, given, inertia, energy, slowness, torque, drag } = this;
+    const { rule, energy, slowness, torque, map } = this;
+    if (!map && !this.iterate(begin, time, sense, branch, width)) return false;
+    for (let j = 0; map && j < energy.length; j++) {
+      energy[j] = map[4 * j + 2] * begin + map[4 * j + 3];
+    }
+    this.evaluate(branch, time, sense, width);
+    this.work = this.spent = 0;
+    for (let j = 0; j < energy.length; j++) {
+      this.work += rule.weights[j] * torque[j];
+      this.spent += rule.weights[j] * slowness[j];
+    }
+    return begin + width * this.work > 0;
+  }
+
+  /** Newton's method on the energies; whether it converges. */
+  iterate(begin, time, sense, branch, width) {
+    const { rule, given, inertia, energy, drag } = this;
     const s = given.length;
     const first = sense * Math.sqrt((2 * begin) / inertia[0]);
     const load = torqueOf(branch, time, first);
@@ -49,23 +103,16 @@ export class Stepper {
       energy[j] = begin;
       for (let i = 0; i < s; i++) energy[j] += width * rule.matrix[j * s + i] * (given[i] + load);
     }
-    const affine = isAffine(branch) && drag.every((each) => each === 0); // one step is exact
+    this.affine = isAffine(branch) && drag.every((each) => each === 0); // one step is exact
     let change = Infinity;
     for (let n = 0; n < NEWTON; n++) {
       const before = change;
       this.evaluate(branch, time, sense, width);
       change = this.correct(begin, width);
       if (!(change < Infinity)) return false;
-      if (affine || change <= SETTLED || (change < GOOD && change > 0.5 * before)) break;
+      if (this.affine || change <= SETTLED || (change < GOOD && change > 0.5 * before)) break;
     }
-    if (!(affine || change < GOOD)) return false;
-    this.evaluate(branch, time, sense, width);
-    this.work = this.spent = 0;
-    for (let j = 0; j < s; j++) {
-      this.work += rule.weights[j] * torque[j];
-      this.spent += rule.weights[j] * slowness[j];
-    }
-    return begin + width * this.work > 0;
+    return this.affine || change < GOOD;
   }
 
   /** Slowness, torque and its rate of change with the energy, at the energies of the nodes. */

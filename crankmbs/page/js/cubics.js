@@ -14,8 +14,13 @@ export function valueAt(cycle, angle) {
   const { knots, coefficients } = cycle;
   const n = knots.length - 1;
   const first = knots[0];
-  const ahead = wrapped(angle - first + NEAR, knots[n] - first);
-  const k = countUpTo(knots, ahead + first, 1, n) - 1;
+  const period = knots[n] - first;
+  const ahead = wrapped(angle - first + NEAR, period);
+  // rows are mostly about even: look near the place that even ones have
+  const low = Math.max(Math.floor((ahead / period) * n) - 1, 1);
+  const high = Math.min(low + 3, n);
+  const near = knots[low - 1] <= ahead + first && ahead + first < knots[high];
+  const k = countUpTo(knots, ahead + first, near ? low : 1, near ? high : n) - 1;
   const x = ahead - NEAR - (knots[k] - first);
   const cubic = (coefficients[k] * x + coefficients[n + k]) * x + coefficients[2 * n + k];
   return cubic * x + coefficients[3 * n + k];

@@ -21,6 +21,7 @@ export class Firing {
     this.period = period;
     this.start = start;
     this.shares = new Float64Array(fuel === null ? 0 : cylinders.length);
+    this.made = new Map(); // shares that come again are the same object
     this.setIn = null; // speed at the decision at which the fuel set in
     this.isOver = false;
     if (fuel !== null) this.decide(0, start.speed, cylinders.map(() => 1));
@@ -50,10 +51,13 @@ export class Firing {
   decide(time, omega, cycles) {
     this.judgeWindow(time, omega);
     const burns = this.setIn !== null && !this.isOver ? 1 : 0;
-    this.shares = this.shares.map((share, k) => {
+    const shares = this.shares.map((share, k) => {
       if (cycles[k] === 0) return share;
       return this.fuel.misfire.some((each) => strikes(each, k + 1, cycles[k])) ? 0 : burns;
     });
+    const name = String(shares);
+    if (!this.made.has(name)) this.made.set(name, shares);
+    this.shares = this.made.get(name);
   }
 
   judgeWindow(time, omega) {

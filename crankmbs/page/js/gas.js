@@ -37,7 +37,7 @@ export function pressuresOf(gas, shape, share, closeness = DIAGRAM) {
   // cylinders of the same sources share what is made of them
   const made = once((sources) => {
     const [fired, motored, below] = JSON.parse(sources);
-    const net = (head) => (below === null ? head : netOf(head, cycle(below), share));
+    const net = (head) => (below === null ? head : netOf(head, cycle(below), share).net);
     const head = cycle(fired);
     if (motored === null) return { pressure: net(head) };
     return combustionOf(net(head), net(cycleOf(close, gas.sources[motored], shape, head)));
@@ -209,7 +209,7 @@ function continued(gas, source, shape, fired) {
   for (let at = first; at < first + period - 1e-6; at += gas.period) {
     const pressed = valueAt(fired, at) + gas.ambient;
     const size = volume(at);
-    const rows = knotsBetween(fired, at, at + length);
+    const rows = gas.closeness < SEEN ? knotsBetween(fired, at, at + length) : [];
     const pressure = (phi) => pressed * Math.pow(size / volume(phi), source.polytrope);
     const part = fitted(gas.closeness, at, at + length, pressure, rows);
     parts.push({ ...part, begin: knots.length });
@@ -228,11 +228,12 @@ function continued(gas, source, shape, fired) {
 
 /** The pressure without combustion, and what combustion adds to it, on the same knots. */
 function combustionOf(fired, motored) {
-  const combustion = netOf(fired, motored, 1);
-  return { pressure: cycleOn(motored, combustion.knots), combustion };
+  const { net, other } = netOf(fired, motored, 1);
+  return { pressure: other, combustion: net };
 }
 
-/** A cycle less a share of another, on the knots of both over their least common period. */
+/** A cycle less a share of another, { net }, and the { other }, on the knots of both over their
+ * least common period. */
 function netOf(one, other, share) {
   const [first] = one.knots;
   const turns = [one, other].map(({ knots }) => Math.round((knots.at(-1) - knots[0]) / TURN));
@@ -242,9 +243,10 @@ function netOf(one, other, share) {
   const inside = (cycle) => knotsOver(cycle, first, last - first).map((each) => first + each);
   const marks = distinct([first, ...inside(one), ...inside(other)], KNOT);
   const knots = Float64Array.from([...marks.filter((each) => each < last - KNOT), last]);
-  const { coefficients: less } = cycleOn(other, knots);
-  const coefficients = cycleOn(one, knots).coefficients.map((c, k) => c - share * less[k]);
-  return { knots, coefficients };
+  const less = cycleOn(other, knots);
+  const { coefficients: of } = cycleOn(one, knots);
+  const coefficients = of.map((c, k) => c - share * less.coefficients[k]);
+  return { net: { knots, coefficients }, other: less };
 }
 
 function knotsBetween(cycle, low, high) {

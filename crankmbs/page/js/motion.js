@@ -10,7 +10,6 @@ import { Stepper } from "./cell.js";
 import { Firing } from "./fuel.js";
 import { branchAt, firstPhases, laterPhases, torqueOf } from "./loads.js";
 import { Path } from "./path.js";
-import { nodesIn } from "./rule.js";
 import { givenAt, reduceAt } from "./tables.js";
 
 const SLIVER = 1e-12; // rad
@@ -80,7 +79,7 @@ export class Travel {
     if (!last && this.sense * (target - this.theta) <= SLIVER) return;
     const short = high - low - Math.abs(target - this.theta);
     const whole = target === edge && Math.abs(short) < SLIVER;
-    if (whole) this.stepper.load(this, nodesIn(this.grid, k, this.sense));
+    if (whole) this.stepper.take(this, k);
     this.pass(target, whole ? k : -1);
     while (this.ending === null && this.theta !== target) this.pass(target, -1);
     if (this.ending !== null) return;
@@ -122,6 +121,7 @@ export class Travel {
       from: this.theta, width, energy, time, sense,
       branch, phases, shares: this.firing.shares, number, torque, slowness, first,
     });
+    if (number >= 0) stepper.keep(this, number);
     const gained = width * stepper.work - this.lost;
     this.energy = energy + gained;
     this.lost = this.energy - energy - gained;

@@ -30,6 +30,6 @@ function atStrongKnots({ knots, coefficients }) {
     const seen = Math.abs(jump) + BEND * Math.abs(bend);
     if (seen > STRONG * (high - low)) strong.push(knots[k]);
   }
-  if (strong.length === 0) strong.push(knots[0]);
+  if (strong.length === 0) strong.push(0);
   return { knots: Float64Array.from([...strong, strong[0] + knots[n] - knots[0]]) };
 }

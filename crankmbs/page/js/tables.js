@@ -7,12 +7,13 @@
  * that a flywheel or a load costs nothing here.
  */
 import { appliedAt } from "./applied.js";
-import { distinct, remembering, repeated } from "./arrays.js";
+import { distinct, remembering, repeated, wrapped } from "./arrays.js";
 import { knotsOver, valueAt } from "./cubics.js";
 import { ringTorque } from "./friction.js";
 import { torqueOverAngle } from "./loads.js";
 import { nodesBetween } from "./rule.js";
 
+const TURN = 2 * Math.PI;
 const WIDEST = (6 * Math.PI) / 180;
 const SLIVER = 1e-12; // rad: two edges closer than this are one
 const NOTHING = []; // thousands of nodes share it
@@ -35,8 +36,8 @@ export function reduceAt(train, theta) {
   return of;
 }
 
-/** The same without the crank's inertia. */
-export function movingAt(train, theta) {
+/** The same without the crank's inertia. partOf(k, phi) : gives `partAt` of cylinder k */
+export function movingAt(train, theta, partOf = (k, phi) => partAt(train, k, phi)) {
   const { crank, gears, cylinders, gravity, pressure, combustion } = train;
   const force = train.friction?.ring_force ?? 0;
   const gas = train.friction?.ring_pressure && pressure.length ? [] : NOTHING;
@@ -44,28 +45,41 @@ export function movingAt(train, theta) {
   let [inertia, slope, rings, drag] = [0, 0, 0, 0];
   let torque = crankWeight(crank, gravity, theta);
   for (let k = 0; k < cylinders.length; k++) {
-    const { rod, piston, loop } = gears[k];
     const phi = theta + cylinders[k].phase;
-    const at = loop.at(phi);
-    const g = rodCentre(at, rod.center_of_mass);
-    inertia += piston.mass * at.x1 * at.x1 + rod.mass * (g.x1 * g.x1 + g.y1 * g.y1);
-    inertia += rod.inertia * at.beta1 * at.beta1;
-    slope += 2 * (piston.mass * at.x1 * at.x2 + rod.mass * (g.x1 * g.x2 + g.y1 * g.y2));
-    slope += 2 * rod.inertia * at.beta1 * at.beta2;
-    if (gravity !== null) {
-      const [ax, ay] = gravityVector(gravity, cylinders[k].bank);
-      torque += piston.mass * ax * at.x1 + rod.mass * (ax * g.x1 + ay * g.y1);
-    }
-    const pressed = pressure.length ? -piston.area * valueAt(pressure[k], phi) * at.x1 : 0;
+    const { piston } = gears[k];
+    const part = partOf(k, phi);
+    const { x1 } = part;
+    inertia += part.inertia;
+    slope += part.slope;
+    torque += part.weight;
+    const pressed = pressure.length ? -piston.area * valueAt(pressure[k], phi) * x1 : 0;
     torque += pressed;
     if (gas !== NOTHING) gas.push(pressed);
-    const { steady, jumping } = appliedAt(gears[k], at);
-    torque -= at.x1 * steady;
-    rings += Math.abs(at.x1) * (force + jumping);
-    drag += gears[k].drag * at.x1 * at.x1;
-    if (combustion.length) burning.push(-piston.area * valueAt(combustion[k], phi) * at.x1);
+    const { steady, jumping } = appliedAt(gears[k], { phi, x: part.x, x1 });
+    torque -= x1 * steady;
+    rings += Math.abs(x1) * (force + jumping);
+    drag += gears[k].drag * x1 * x1;
+    if (combustion.length) burning.push(-piston.area * valueAt(combustion[k], phi) * x1);
   }
   return { theta, inertia, slope, torque, combustion: burning, gas, rings, drag };
+}
+
+/** What the masses of cylinder k are at a cycle angle [rad]: its share of inertia and slope, and
+ * the torque of its weights; with the piston's position and its derivative. */
+function partAt({ gears, cylinders, gravity }, k, phi) {
+  const { rod, piston, loop } = gears[k];
+  const at = loop.at(phi);
+  const g = rodCentre(at, rod.center_of_mass);
+  let inertia = piston.mass * at.x1 * at.x1 + rod.mass * (g.x1 * g.x1 + g.y1 * g.y1);
+  inertia += rod.inertia * at.beta1 * at.beta1;
+  let slope = 2 * (piston.mass * at.x1 * at.x2 + rod.mass * (g.x1 * g.x2 + g.y1 * g.y2));
+  slope += 2 * rod.inertia * at.beta1 * at.beta2;
+  let weight = 0;
+  if (gravity !== null) {
+    const [ax, ay] = gravityVector(gravity, cylinders[k].bank);
+    weight = piston.mass * ax * at.x1 + rod.mass * (ax * g.x1 + ay * g.y1);
+  }
+  return { x: at.x, x1: at.x1, inertia, slope, weight };
 }
 
 /** Torque of gas, weights, friction and loads over the angle [N m] at an angle that is reduced, at
@@ -149,12 +163,13 @@ function nearFolds({ radius, length, offset }, { phase }, period) {
 export function nodeMaker() {
   const angles = remembering(nodesBetween);
   const nodes = remembering(
-    (at, train) => {
+    (at, stages, train) => {
       const found = new Array(at.length);
-      for (let k = 0; k < at.length; k++) found[k] = movingAt(train, at[k]);
+      const partOf = partsAt(at, stages, train);
+      for (let k = 0; k < at.length; k++) found[k] = movingAt(train, at[k], partOf(k));
       return found;
     },
-    (at, { crank, gears, cylinders, gravity, friction, pressure, combustion }) => {
+    (at, stages, { crank, gears, cylinders, gravity, friction, pressure, combustion }) => {
       const parts = gears.map(({ shape, rod, piston, drag, applied }) => [
         shape, rod.mass, rod.center_of_mass, rod.inertia, piston.mass, piston.area, drag, applied,
       ]);
@@ -162,5 +177,22 @@ export function nodeMaker() {
       return [at, parts, cylinders, first, gravity, friction, pressure, combustion];
     },
   );
-  return (train, edges, rule) => nodes(angles(edges, rule), train);
+  return (train, edges, rule) => nodes(angles(edges, rule), rule.nodes.length, train);
+}
+
+/** For the number of a node a function that gives `partAt` of the cylinders there: in cells of one
+ * width like cylinders meet the same angles of a turn, and each is computed once. */
+function partsAt(at, stages, train) {
+  const { cylinders } = train;
+  const width = at[stages] - at[0];
+  const cells = [TURN, ...cylinders.map(({ phase }) => wrapped(phase, TURN))]
+    .map((angle) => angle / width);
+  const even = cells.every((each) => Math.abs(each - Math.round(each)) < SLIVER / width) &&
+    at.every((each, n) => n < stages || Math.abs(each - at[n - stages] - width) < SLIVER);
+  if (!even) return () => undefined;
+  const [turn, ...ahead] = cells.map((each) => stages * Math.round(each));
+  const like = cylinders.map(({ own, bank }, k) =>
+    (own ? k : cylinders.findIndex((each) => !each.own && each.bank === bank)));
+  const found = cylinders.map(() => new Array(turn));
+  return (n) => (k, phi) => (found[like[k]][(n + ahead[k]) % turn] ??= partAt(train, k, phi));
 }
