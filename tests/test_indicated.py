@@ -330,6 +330,24 @@ def test_what_cannot_be_is_warned_of(tmp_path):
     assert any("the signal drifts" in w for w in there.warnings)
 
 
+def test_half_cycles_of_a_four_stroke_engine_are_no_two_stroke_ones(tmp_path):
+    angle = np.arange(-360.0, 720.0 * 5 - 360.0, 0.5)
+    pressure = pressure_of(FIRED, angle)
+    halves = text([angle, pressure], ["CA", "PCYL1"], ["deg", "bar(a)"], head=HEADER)
+    there = found(tmp_path, halves, stroke=2)
+    assert there.warnings == (
+        "warning: cylinder 1: every second cycle compresses nothing: its dead centre is 0.1 bar "
+        "above its lowest pressure, that of the others 52.5 bar; these are the halves of "
+        "four-stroke cycles, which stroke=4 reads",
+    )
+    assert there.sentences[-2].endswith("; check the stroke first")
+    assert not found(tmp_path, halves).warnings
+    turn = np.arange(-180.0, 180.0, 0.5)
+    fails = [pressure_of(each, turn) for each in [FIRED, MOTORED] * 5]
+    misfiring = text([np.tile(turn, 10), np.concatenate(fails)], ["CA", "PCYL1"], ["deg", "bar(a)"])
+    assert not any("every second" in each for each in found(tmp_path, misfiring, stroke=2).warnings)
+
+
 def test_every_cycle_is_judged_and_no_table_goes_below_zero(tmp_path):
     values = cycles(FIRED, ANGLE, 5)
     values[3, 100] = -2.0  # a spike that the mean hides

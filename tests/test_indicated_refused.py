@@ -1,7 +1,7 @@
 """What cannot be read is refused with one sentence: what, where, rule, what came, way out."""
 
 import pytest
-from command_line import crankmbs_
+from command_line import crankmbs_, refused
 from wrong_exports import WRONG
 
 from crankmbs import InputError, UndecidedError, read_pressure
@@ -75,6 +75,10 @@ MESSAGES = {
         ' row below the names; give unit="bar" or another of kPa, Pa, MPa, psi, with reference='
         '"absolute" or "gauge" unless the compression shows it'
     ),
+    "another unit": (
+        'file a.csv: unit="kPa" is for pressures without a unit, and column "PCYL1" is in bar; '
+        "leave it out, or correct the heading"
+    ),
     "no such column": (
         'file a.csv: columns: no column is named "PCYL7"; the columns are CA, PCYL1; did you mean '
         '"PCYL1"?'
@@ -142,7 +146,7 @@ MESSAGES = {
     ),
     "upside down": (
         "file a.csv: PCYL1 is upside down: its largest excursion is downwards, to -67.82 bar; "
-        'give invert=True, or the names of the pressures alone, such as columns="PCYL1..4"'
+        'give invert=True, or give the names of the pressures alone, such as columns="PCYL1..4"'
     ),
     "a peak beside the dead centre": (
         "file a.csv: the peak of the pressure lies at 77 degrees, not near a multiple of 360: "
@@ -273,5 +277,30 @@ def test_a_bad_option_gets_one_sentence(options, message):
 
 
 def test_a_missing_file():
-    with pytest.raises(InputError, match=r"file no\.csv is missing"):
+    with pytest.raises(InputError) as caught:
         read_pressure("no.csv")
+    assert str(caught.value) == "file no.csv is missing; paths are relative to the working folder"
+
+
+def test_a_signal_that_was_turned_over_needlessly(export):
+    file, _ = export("no unit")
+    said = refused("pressure", file, "--unit", "bar", "--invert")
+    assert said == (
+        "file a.csv: PCYL1 is upside down after --invert: its largest excursion is downwards, to "
+        "-67.82 bar; leave it out, or give the names of the pressures alone, such as --columns "
+        '"PCYL1..4"'
+    )
+
+
+@pytest.mark.parametrize(
+    ("above", "row"),
+    [
+        ("time [s];pressure [bar];wheel", "0.1;1;0"),
+        ("PCYL1;[bar]\n-;" + ";".join(str(k) for k in range(-360, 360)), "1" + 720 * ";1.5"),
+    ],
+)
+def test_a_unit_for_pressures_that_have_one(tmp_path, above, row):
+    """Over time, and one cycle a row."""
+    (tmp_path / "a.csv").write_text("\n".join([above, *[row] * 9]))
+    with pytest.raises(InputError, match=r'unit="kPa" is for pressures without a unit, and column'):
+        read_pressure(tmp_path / "a.csv", unit="kPa", wheel="60-2")

@@ -53,6 +53,7 @@ WRONG = {
     "no angle": ("a.csv", of(FULL, EXACT, names=("X", "PCYL1"), units=("", "bar")), {}),
     "no pressure": ("a.csv", of(FULL, EXACT, names=("CA", "TEMP"), units=("deg", "°C")), {}),
     "no unit": ("a.csv", text([FULL, EXACT], ["CA", "PCYL1"]), {}),
+    "another unit": ("a.csv", GOOD, {"unit": "kPa"}),
     "no such column": ("a.csv", GOOD, {"columns": "PCYL7"}),
     "no reference": ("a.csv", of(FULL, EXACT - 4.0, units=("deg", "bar")), {}),
     "rows missing at the peak": (

@@ -10,7 +10,14 @@ from crankmbs.errors import InputError, UndecidedError, shown
 from crankmbs.indicated.options import Options
 from crankmbs.scene.headings import PRESSURE_UNITS, Heading, angle_places, by_name, pick
 
-__all__ = ["Column", "angle_column", "columns_of", "is_pressure", "several_words"]
+__all__ = [
+    "Column",
+    "angle_column",
+    "columns_of",
+    "is_pressure",
+    "refuse_unit",
+    "several_words",
+]
 
 _KINDS = {
     "intake": r"^p?[ _.-]*(int|inl|ein|saug|man(?!o)|map$|boost|lade)|intake|inlet|ansaug",
@@ -28,6 +35,7 @@ _PRESSURE_NAME = re.compile(
     r"|cyl[ _]?press\w*|cylpr|p[ _]?cylinder|cycle|cyc|zyklus)[ _.#(\[-]*[0-9]*([ _.#(\[-].*)?",
     re.IGNORECASE,
 )
+_WRITTEN = {unit.lower(): unit for unit in ("Pa", "hPa", "kPa", "MPa", "N/mm^2")}
 _MOST_CYLINDERS = 24  # of one engine: more columns alike are its cycles
 
 
@@ -84,7 +92,8 @@ def columns_of(headings: Sequence[Heading], options: Options, angle: int) -> tup
 
     Raises
     ------
-    InputError : no such columns; UndecidedError : no unit, or numbers that may count either
+    InputError : no such columns, a unit for those that have one; UndecidedError : no unit, or
+        numbers that may count either
     """
     chosen = None
     if options.columns is not None:
@@ -99,7 +108,21 @@ def columns_of(headings: Sequence[Heading], options: Options, angle: int) -> tup
         )
     named = [(k, _kind(headings[k].name) if k not in (chosen or ()) else "") for k in rest]
     read = [(k, kind) for k, kind in named if kind or chosen is None or k in chosen]
+    refuse_unit([headings[k] for k, _ in read], options.unit)
     return _apart(_numbered(headings, read, options), chosen is not None)
+
+
+def refuse_unit(headings: Sequence[Heading], unit: str | None) -> None:
+    """Refuse a unit where all pressures have theirs, and one has another."""
+    if unit is None or any(heading.pressure is None for heading in headings):
+        return
+    for heading in headings:
+        if heading.pressure != PRESSURE_UNITS[unit]:
+            raise InputError(
+                f'unit="{_WRITTEN.get(unit, unit)}" is for pressures without a unit, and column '
+                f"{shown(heading.name)} is in {_WRITTEN.get(heading.unit, heading.unit)}; leave it "
+                "out, or correct the heading"
+            )
 
 
 def is_pressure(heading: Heading, units: Sequence[str] = ("",)) -> bool:

@@ -14,12 +14,13 @@ from crankmbs.indicated.options import Options
 from crankmbs.indicated.record import Record
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["cut_cycles", "firing_angle", "flank", "lags", "peak_or_given", "places"]
+__all__ = ["cut_cycles", "firing_angle", "flank", "half_cycles", "lags", "peak_or_given", "places"]
 
 _BEFORE, _BEHIND = 25.0, 60.0  # degrees about a dead centre where the peak of a cycle may lie
 _USUAL = 8.0  # degrees behind it
 _FLANK = 0.1  # of the range: still compression, before any combustion
 _APART = 4.0  # degrees: how well a flank tells a dead centre
+_EMPTY = 0.1  # of the others' rise up to the dead centre: nothing was compressed
 _GRID = sorted({*range(0, 720, 30), *range(0, 720, 72), *range(0, 720, 45)})
 
 
@@ -151,6 +152,23 @@ def cut_cycles(
         return first, phi, np.roll(values, -first, axis=1)
     flat = values.reshape(-1)[first : len(values) * n - (n - first)]
     return first, phi, flat.reshape(len(values) - 1, n)
+
+
+def half_cycles(phi: Array, pressure: Array) -> tuple[float, float] | None:
+    """How far [Pa] the dead centre lies above the lowest pressure, in two-stroke cycles of which
+    every second one compresses nothing, and in the others; None where all compress.
+
+    One that only fails to fire compresses as the others do: without, it is a gas exchange.
+
+    Parameters
+    ----------
+    phi : shape (n,) [deg] from the firing dead centre; pressure : shape (cycles, n) [Pa]
+    """
+    if np.ptp(phi) > 400.0 or len(pressure) < 2:
+        return None
+    rise = pressure[:, np.argmin(np.abs(phi))] - np.min(pressure, axis=1)
+    low, high = sorted((float(np.mean(rise[::2])), float(np.mean(rise[1::2]))))
+    return (low, high) if low < _EMPTY * high else None
 
 
 def _off(a: float, b: float, period: float) -> float:

@@ -125,7 +125,7 @@ class Options:
         name = str(file)
         return read_sheet(
             name,
-            decode(content_of(Path(file), _MOST), name),
+            decode(content_of(Path(file), _MOST, "the working folder"), name),
             separator=self.separator,
             decimal=self.decimal,
             skip=self.skip,

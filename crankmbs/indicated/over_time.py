@@ -10,7 +10,7 @@ from scipy.interpolate import CubicSpline
 
 from crankmbs.delimited import Sheet
 from crankmbs.errors import InputError, UndecidedError, shown
-from crankmbs.indicated.channels import is_pressure, several_words
+from crankmbs.indicated.channels import is_pressure, refuse_unit, several_words
 from crankmbs.indicated.options import Options
 from crankmbs.indicated.record import Channel, Record
 from crankmbs.indicated.rotation import Rotation, rotation_of
@@ -73,6 +73,7 @@ def record_over_time(
     headings = [h._replace(name=h.name or f"column {k}") for k, h in enumerate(headings, start=1)]
     columns = _columns(sheet, headings, at, options)
     _ask(headings, columns, options, geometry=geometry)
+    refuse_unit([headings[k] for k in columns.pressures], options.unit)
     assert options.wheel is not None
     time = clock(sheet, headings[at], at)
     for k in (*columns.pressures, columns.wheel):

@@ -14,7 +14,14 @@ from crankmbs.errors import InputError, UndecidedError
 from crankmbs.indicated.cylinders import cylinder_of
 from crankmbs.indicated.dead_centre import DeadCentre, fired_dead_centre
 from crankmbs.indicated.findings import CylinderPressure, Indicated
-from crankmbs.indicated.firing import cut_cycles, firing_angle, lags, peak_or_given, places
+from crankmbs.indicated.firing import (
+    cut_cycles,
+    firing_angle,
+    half_cycles,
+    lags,
+    peak_or_given,
+    places,
+)
 from crankmbs.indicated.gaps import bridged
 from crankmbs.indicated.options import Options
 from crankmbs.indicated.over_time import record_over_time, time_column
@@ -100,7 +107,7 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
     speed = _speed(record, cylinders[0].firing, shape, sheet.name)
     remarks += found.remarks
     for cylinder in cylinders:
-        remarks += sentences_of(cylinder, shape, found.absolute, doubted=found.doubted)
+        remarks += sentences_of(cylinder, shape, found.absolute, found.doubted)
     if shape is None:
         remarks.append(
             "no stroke and rod length are known: without a scene no imep and no volumes are found"
@@ -121,12 +128,12 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
 
 class _Found(NamedTuple):
     """The cylinders, and their cycles before these were referenced; whether their pressures are
-    absolute, and whether their compression speaks against that; what was done."""
+    absolute; what their compression speaks against, else nothing; what was done."""
 
     cylinders: tuple[CylinderPressure, ...]
     cut: list[Cycles]
     absolute: bool
-    doubted: bool
+    doubted: str
     remarks: list[str]
 
 
@@ -153,6 +160,10 @@ def _cylinders(
     """
     cut, remarks = _cut(record, options, scene, first)
     reference, why, against = decide(cut, options, shape)
+    halves = half_cycles(cut[0].phi, cut[0].pressure)
+    if halves is not None:
+        remarks.append(_half_words(cut[0].channel, *halves))
+        against = ""  # the mean of compressions and gas exchanges is no compression
     why += f", though {against}" if against else ""
     cylinders, absolute = [], True
     for cycles in cut:
@@ -160,7 +171,8 @@ def _cylinders(
         look = "warning: " if against else ""
         remarks.append(f"{look}cylinder {cycles.channel.cylinder}: {words} ({why})")
         cylinders.append(cylinder_of(cycles, added, shape, options, absolute))
-    return _Found(tuple(cylinders), cut, absolute, bool(against), remarks)
+    doubted = "the stroke" if halves else "the reference" if against else ""
+    return _Found(tuple(cylinders), cut, absolute, doubted, remarks)
 
 
 def _by_pressure(
@@ -247,7 +259,7 @@ def _cut(
         remarks += words
     means = [np.nanmean(values, axis=0) for values in filled]
     for channel, mean in zip(channels, means, strict=True):
-        _check_sign(channel, mean)
+        _check_sign(channel, mean, inverted=options.invert)
     if first is None:
         first = (
             firing_angle(record.angle, means[0], record.period)
@@ -290,6 +302,14 @@ def _cut(
     return cut, remarks
 
 
+def _half_words(channel: Channel, low: float, high: float) -> str:
+    return (
+        f"warning: cylinder {channel.cylinder}: every second cycle compresses nothing: its dead "
+        f"centre is {low / BAR:.2g} bar above its lowest pressure, that of the others "
+        f"{high / BAR:.3g} bar; these are the halves of four-stroke cycles, which stroke=4 reads"
+    )
+
+
 def _pressures(record: Record) -> tuple[list[Channel], list[str]]:
     """The channels of the cylinders, and what the others are."""
     of_kind: dict[str, list[Channel]] = {}
@@ -312,12 +332,15 @@ def _pressures(record: Record) -> tuple[list[Channel], list[str]]:
     return sorted(chosen, key=lambda channel: channel.cylinder), remarks
 
 
-def _check_sign(channel: Channel, mean: Array) -> None:
+def _check_sign(channel: Channel, mean: Array, *, inverted: bool) -> None:
     middle = float(np.median(mean))
     if middle - np.min(mean) > 1.5 * (np.max(mean) - middle):
+        after, way_out = "", "give invert=True"
+        if inverted:
+            after, way_out = " after invert=True", "leave it out"
         raise InputError(
-            f"{channel.name} is upside down: its largest excursion is downwards, to "
-            f"{np.min(mean) / BAR:.4g} bar; give invert=True, or the names of the pressures alone, "
+            f"{channel.name} is upside down{after}: its largest excursion is downwards, to "
+            f"{np.min(mean) / BAR:.4g} bar; {way_out}, or give the names of the pressures alone, "
             'such as columns="PCYL1..4"'
         )
 

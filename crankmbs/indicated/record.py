@@ -15,7 +15,13 @@ import numpy as np
 from crankmbs.delimited import Sheet
 from crankmbs.delimited.dialect import is_number
 from crankmbs.errors import InputError, UndecidedError
-from crankmbs.indicated.channels import Column, angle_column, columns_of, several_words
+from crankmbs.indicated.channels import (
+    Column,
+    angle_column,
+    columns_of,
+    refuse_unit,
+    several_words,
+)
 from crankmbs.indicated.options import Options
 from crankmbs.indicated.rotation import Rotation
 from crankmbs.numerics.arrays import Array, Index
@@ -303,6 +309,7 @@ def _across(
     angle, first, row = axis
     words = [cell.strip("[]() ").lower() for cells in sheet.above for cell in cells]
     units = [word for word in words if word in PRESSURE_UNITS]
+    refuse_unit([Heading("pressure", each) for each in units[-1:]], options.unit)
     unit = units[-1] if units else options.unit
     if unit is None:
         raise UndecidedError(

@@ -21,11 +21,11 @@ _MOVED = 0.01  # of the range: how far a cycle may miss the next one's beginning
 
 
 def sentences_of(
-    cylinder: CylinderPressure, shape: Shape | None, referenced: bool, *, doubted: bool
+    cylinder: CylinderPressure, shape: Shape | None, referenced: bool, doubted: str
 ) -> Iterator[str]:
     """The sentences of one cylinder.
 
-    doubted : whether the compression speaks against the reference, and so has no dead centre
+    doubted : what the compression speaks against, so that it has no dead centre; else nothing
     """
     name = f"cylinder {cylinder.number}"
     yield _size(cylinder, name, doubted)
@@ -43,7 +43,7 @@ def sentences_of(
         )
 
 
-def _size(cylinder: CylinderPressure, name: str, doubted: bool) -> str:
+def _size(cylinder: CylinderPressure, name: str, doubted: str) -> str:
     mean = cylinder.mean
     at = cylinder.angle[np.argmax(mean)]
     burns = {True: "fired", False: "motored", None: "fired or motored (not clear which)"}
@@ -85,13 +85,13 @@ def _noise(cylinder: CylinderPressure, name: str) -> str:
     return f"{text}; a cycle ends {cylinder.closure / BAR:.2g} bar off the beginning of the next"
 
 
-def _stands(centre: DeadCentre, doubted: bool) -> bool:
-    """Whether a dead centre has a basis: a motored peak, or a reference that is not doubted."""
+def _stands(centre: DeadCentre, doubted: str) -> bool:
+    """Whether a dead centre has a basis: a motored peak, or an undoubted compression."""
     return centre.motored or not doubted
 
 
 def _dead_centre(
-    cylinder: CylinderPressure, name: str, shape: Shape | None, doubted: bool
+    cylinder: CylinderPressure, name: str, shape: Shape | None, doubted: str
 ) -> Iterator[str]:
     centre = cylinder.dead_centre
     if centre is None:
@@ -106,8 +106,8 @@ def _dead_centre(
     if not _stands(centre, doubted):
         yield (
             f"{name}: the dead centre is not checked: its compression would show it "
-            f"{centre.middle:+.2f} +- {centre.half:.2f} degrees from the file's, were the "
-            "pressures absolute; check the reference first"
+            f"{centre.middle:+.2f} +- {centre.half:.2f} degrees from the file's; check {doubted} "
+            "first"
         )
         return
     angle = cylinder.firing + centre.middle

@@ -13,8 +13,10 @@ _MOST = 32_000_000  # bytes: a million rows
 _ENDLESS = (stat.S_ISCHR, stat.S_ISBLK, stat.S_ISFIFO, stat.S_ISSOCK)
 
 
-def content_of(path: Path, most: int = _MOST) -> bytes:
+def content_of(path: Path, most: int = _MOST, base: str = "the scene file") -> bytes:
     """The bytes of a file that has an end, not farther away than ``most`` bytes.
+
+    base : what its path is relative to, for the sentence
 
     Raises
     ------
@@ -27,7 +29,7 @@ def content_of(path: Path, most: int = _MOST) -> bytes:
     try:
         return _content(path, most)
     except FileNotFoundError:
-        raise InputError(f"file {path} is missing; paths are relative to the scene file") from None
+        raise InputError(f"file {path} is missing; paths are relative to {base}") from None
     except OSError as error:
         raise InputError(f"file {path} cannot be read: {error.strerror}") from None
     except ValueError as error:
