@@ -59,6 +59,15 @@ def test_a_cycle_that_ends_unlike_it_began_has_a_gap_there():
     assert np.all(np.diff(speed[gap + 1 :]) < 0.0)
 
 
+def test_a_short_run_that_turns_back_is_drawn_over_time():
+    view = last_view(simulate(driven(Ramp(start=20.0, to=-20.0, over=0.2), until="0.2 s")))
+    assert view.window.kind == "whole run"
+    for draw in (speed_figure, torque_figure):
+        (ax,) = draw(view).axes
+        assert np.all(np.diff(ax.lines[0].get_xdata()) > 0.0)
+        assert ax.get_xlabel().startswith("time [s]")
+
+
 def test_a_crank_that_swings_at_the_end_is_shown_as_far_as_it_came():
     view = last_view(simulate(driven(Ramp(start=200.0, to=-100.0, over=0.3), until="0.25 s")))
     assert view.window.kind == "last swings"

@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from crankmbs import (
+    Constant,
     Crank,
     Gas,
     Layout,
@@ -28,6 +29,7 @@ from crankmbs.report.rows import (
     tables,
     unsteady,
 )
+from crankmbs.scene.parts import Friction
 
 PEAK = 370.0  # deg, of the pressure, in the cycle of each cylinder
 ORDER = (1, 3, 4, 2)
@@ -132,6 +134,29 @@ def test_a_run_that_speeds_up_has_peaks_of_the_whole_run():
     assert speed["cycle"] == "2"
     assert float(speed["at time [s]"]) == pytest.approx(0.936, abs=1e-3)
     assert "changes by +131 rpm over the last cycle" in unsteady(result, found)
+
+
+@pytest.mark.parametrize(("force", "kind"), [(15.0, "reversal"), (60.0, "load off")])
+def test_a_run_shorter_than_a_cycle_that_rests_is_not_periodic(force, kind):
+    """The crank swings, or is pushed and rubs to rest: at either end its speed is 0, so that it
+    does not drift."""
+    push = Constant(torque=5.0, until=0.1)
+    scene = load_scene("coasting").with_(friction=Friction(ring_force=force), run__until="20 s")
+    start = {"start__angle": "60 deg", "start__speed": "0 rpm"}
+    result = simulate(scene.with_(torque=() if kind == "reversal" else (push,), **start))
+    found = result.measures()
+    assert kind in result.event_table.values("kind")
+    assert found.window.kind == "whole run"
+    assert abs(found.speed_gain.value) < 1e-6
+    assert "rests or turns back" in unsteady(result, found)
+    whole, run = tables(result, found)
+    assert "at time [s]" in run.headings
+    names = [name for name, *_ in whole.rows]
+    assert not any("fluctuation" in name or "efficiency" in name for name in names)
+    if kind != "reversal":
+        rows = {name: value for name, value, _ in whole.rows}
+        assert rows["drift of the speed over the whole run [rpm]"] == "0"
+        assert not any("kinetic" in name for name in names)
 
 
 @pytest.mark.slow

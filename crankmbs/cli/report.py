@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 import textwrap
 from typing import TYPE_CHECKING
 
@@ -90,7 +91,7 @@ def _about(result: Result, measures: Measures) -> str:
             *([f"{'speed':<12} {fault}"] if (fault := unsteady(result, measures)) else []),
             *_events(result),
             _error_line(result),
-            f"{'energy':<12} closes to {measures.energy_closure:.1e} of the peak kinetic energy",
+            f"{'energy':<12} closes to {_closure(measures)}",
             _cost_line(result),
         ]
     )
@@ -122,6 +123,11 @@ def _events(result: Result) -> list[str]:
         why = "the crank reached no firing dead centre with fuel"
         said.append(f"{'fuel':<12} the engine did not fire: {why}")
     return said
+
+
+def _closure(measures: Measures) -> str:
+    share, rounding = measures.energy_closure, sys.float_info.epsilon
+    return "rounding" if share < rounding else f"{share:.1e} of the peak kinetic energy"
 
 
 def _error_line(result: Result) -> str:

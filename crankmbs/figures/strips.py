@@ -49,7 +49,8 @@ def speed_figure(view: View) -> Figure:
     every = view.scene.run.every
     in_time = view.over_time or (every is not None and every.unit == "s")
     whole = in_time or view.window.first > 0
-    figure, axes = panels(1 + whole, 1, 10.0, 7.0 if whole else 5.0)
+    last = not (view.over_time and view.window.first == 0)
+    figure, axes = panels(whole + last, 1, 10.0, 7.0 if whole and last else 5.0)
     if whole:
         source = over_time(view.result).__getitem__ if in_time else view.result.sampled
         time, angle, speed = map(source, ("time", "crank_angle", "crank_speed"))
@@ -60,10 +61,11 @@ def speed_figure(view: View) -> Figure:
             at = [mark.time if in_time else mark.crank_angle / math.tau for mark in named]
             mark_events(axes[0], named, np.array(at))
         mark_points(axes[0])
-    _speed(axes[-1], *view.drawn(view.along, view.values("crank_speed")))
-    crank_axis(axes[-1:], view)
+    if last:
+        _speed(axes[-1], *view.drawn(view.along, view.values("crank_speed")))
+        crank_axis(axes[-1:], view)
     about = f"crank speed over the {view.window.kind}" + (
-        ", above over the whole run" if whole else ""
+        ", above over the whole run" if whole and last else ""
     )
     footer(figure, view.result, about, view.exactness("crank_speed"))
     return figure

@@ -182,7 +182,7 @@ def last_view(result: Result) -> View:
     shift = math.floor(low / period + 1e-9) * period
     if low == high:  # the crank stands still
         low, high = low - DEGREE, high + DEGREE
-    in_time = window.kind == TURNS_BACK
+    in_time = window.kind == TURNS_BACK or not in_one_sense
     curves = over_time(result, window.first) if in_time else {}
     degrees = np.degrees(curves.get("crank_angle", angle) - shift)
     along, (low, high) = degrees, map(math.degrees, (low - shift, high - shift))

@@ -163,6 +163,8 @@ def peak_numbers(quantities: Sequence[Quantity], motion: Motion) -> Numbers:
     )
     sizes = tops.sizes
     forces = np.array([each.units == "N" for each in quantities])
+    speeds = np.array([each.units == "rad/s" for each in quantities])
+    sizes[speeds] = sizes[speeds].max(initial=0.0)
     sums = forces & np.array([each.phase is None for each in quantities])
     sizes[sums] = sizes[forces].max(initial=0.0)  # of the pins' forces
     return {

@@ -14,7 +14,7 @@ from crankmbs.measures.estimate import ROUNDING, Estimate, Number, Numbers, esti
 from crankmbs.measures.joints import JointForce, joints_of, shell_area
 from crankmbs.measures.nodes import Nodes, nodes_of
 from crankmbs.measures.peaks import SPEEDS, Peak, peak_numbers, peaks_from, quantities_of
-from crankmbs.measures.span import CYCLES, TURNS_BACK, Span, measured_span, passes_over
+from crankmbs.measures.span import CYCLES, Span, measured_span, passes_over
 from crankmbs.mechanics.axes import areas
 from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.motion.motion import Motion
@@ -38,6 +38,7 @@ __all__ = [
 ]
 
 _DRIFT, _OF_SWING = 0.01, 0.25  # what may change from a cycle to the next and be called periodic
+_RESTS = 1e-6  # of the highest speed: a root of the energy is known to half the digits near zero
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,11 +93,19 @@ class Measures:
     @property
     def steady(self) -> bool:
         """Whether the motion over the window is periodic enough to stand for the cycles after it:
-        its speed drifts by no more than 1 % of its mean and a quarter of its swing."""
+        the crank neither rests nor turns back, and its speed drifts by no more than 1 % of its mean
+        and a quarter of its swing."""
         mean = abs(self.mean_speed.value)
         most = min(_DRIFT * mean, _OF_SWING * self.fluctuation.value * mean)
         drift = abs(self.speed_gain.value) - self.speed_gain.error
-        return self.window.kind != TURNS_BACK and drift <= most
+        return self.moves_on and drift <= most
+
+    @property
+    def moves_on(self) -> bool:
+        """Whether the crank neither rests nor turns back in the window, nor at its ends."""
+        highest, lowest = (peak.value.value for peak in self.peaks[-2:])
+        slow, fast = sorted(map(abs, (highest, lowest)))
+        return highest * lowest > 0.0 and slow > _RESTS * fast
 
     @property
     def piston_speed(self) -> tuple[Estimate, ...]:
@@ -234,7 +243,7 @@ def _numbers(scene: Scene, window: Span, motion: Motion) -> Numbers:
     numbers |= {
         "mean_speed": mean,
         "fluctuation": _fluctuation(numbers["peaks"].value[-2:], mean),
-        "speed_gain": _speed_gain(motion),
+        "speed_gain": _speed_gain(motion, np.abs(speed).max(keepdims=True)),
         "means": Number(means, late * sizes),
     }
     torques = {
@@ -248,7 +257,8 @@ def _numbers(scene: Scene, window: Span, motion: Motion) -> Numbers:
         else:
             numbers[name] = Number(torque[-1:], np.abs(torque[-1:]))
     if duration:
-        numbers["kinetic_power"] = _energy_gain(scene, motion).over(duration)
+        energy = variables["kinetic_energy"].max(keepdims=True)
+        numbers["kinetic_power"] = _energy_gain(scene, motion, energy).over(duration)
         numbers |= _powers(scene, window, nodes, late)
     return numbers
 
@@ -332,14 +342,14 @@ def _fluctuation(extremes: Array, mean: Number) -> Number:
     return Number(np.where(np.abs(share) > ROUNDING * largest, share, 0.0), largest)
 
 
-def _speed_gain(motion: Motion) -> Number:
+def _speed_gain(motion: Motion, largest: Array) -> Number:
     begin, end = (speed for _, speed in _ends(motion))
-    return Number(end - begin, np.maximum(np.abs(end), np.abs(begin)))
+    return Number(end - begin, largest)
 
 
-def _energy_gain(scene: Scene, motion: Motion) -> Number:
+def _energy_gain(scene: Scene, motion: Motion, largest: Array) -> Number:
     before, after = (0.5 * inertia_alone(scene, at) * speed**2 for at, speed in _ends(motion))
-    return Number(after - before, np.maximum(before, after))
+    return Number(after - before, largest)
 
 
 def _ends(motion: Motion) -> tuple[tuple[Array, Array], tuple[Array, Array]]:

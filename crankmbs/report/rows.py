@@ -133,7 +133,7 @@ def not_periodic(measures: Measures) -> str:
     """
     if measures.steady:
         return ""
-    if measures.window.kind == TURNS_BACK:
+    if not measures.moves_on:
         return "not periodic: the crank rests or turns back"
     scale, unit = displayed("rad/s")
     drift = measures.speed_gain.value / scale
@@ -268,6 +268,7 @@ def _cells(units: str, estimate: Estimate) -> list[str]:
 
 def _both(estimate: Estimate, scale: float) -> list[str]:
     value, error = estimate.value / scale, estimate.error / scale
+    value = value if abs(value) > error or math.isinf(error) else 0.0
     return [digits(value, error), error_digits(error)]
 
 
