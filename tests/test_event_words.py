@@ -78,7 +78,7 @@ def test_what_is_said_of_the_whole_run_is_not_read_from_its_end(tmp_path):
     """With every = "none" the last cycle alone is kept; a first firing before it is not known."""
     scene = load_scene("run_up").with_(run__until="0.6 s")
     whole, end = simulate(scene), simulate(replace(scene, run=replace(scene.run, every=None)))
-    assert [mark.words for mark in marks(whole)][1:] == ["speed table off", "first firing"]
-    assert [mark.words for mark in marks(end)][1:] == ["speed table off"]
+    assert [mark.words for mark in marks(whole)][1:] == ["starter off", "first firing"]
+    assert [mark.words for mark in marks(end)][1:] == ["starter off"]
     assert not did_not_fire(end)
     assert marks(Result.load(whole.save(tmp_path))) == marks(whole)

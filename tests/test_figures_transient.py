@@ -27,7 +27,7 @@ def words(ax):
 
 def test_a_start_is_marked_where_it_happens(start):
     speed, torque = plot(start, "transient").axes
-    assert words(speed) == ["speed table on", "speed table off", "first firing", "last firing"]
+    assert words(speed) == ["starter on", "starter off", "first firing", "last firing"]
     at = {text.get_text(): text.xy[0] for text in speed.texts}
     first, last = at["first firing"], at["last firing"]
     passed = start.interp(time=[first, last]).crank_angle.values
@@ -58,7 +58,7 @@ def test_a_crank_that_turns_back_is_drawn_between_its_samples():
 
 def test_an_event_at_the_begin_of_the_first_cycle_is_in_it(start):
     speeds, _ = plot(start, "cycles").axes
-    assert words(speeds) == ["speed table on", "speed table off", "first firing", "last firing"]
+    assert words(speeds) == ["starter on", "starter off", "first firing", "last firing"]
     assert speeds.texts[0].xy[0] == pytest.approx(0.5)
 
 

@@ -96,7 +96,7 @@ def test_pistons_fuel_and_the_colour_of_the_gas_are_the_runs(runs, replayed, nam
 
 def test_marks_are_the_events_that_figures_name(films, runs):
     marks = [(each["words"], each["time"]) for each in films["run_up"]["marks"]]
-    words = ["speed table on", "speed table off", "first firing", "constant on"]
+    words = ["starter on", "starter off", "first firing", "driven machine on"]
     assert [name for name, _ in marks] == words
     table = runs["run_up"].event_table
     kinds, times = table.values("kind"), table.values("time")

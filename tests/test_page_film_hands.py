@@ -239,7 +239,7 @@ def test_events_stand_at_their_times_with_words_that_do_not_touch(browser, files
     with film(browser, files["run_up"], size=size) as visited:
         events = visited.page.locator("#upper .events")
         assert events.locator("text").all_text_contents() == [
-            "speed table on", "speed table off", "first firing", "constant on",
+            "starter on", "starter off", "first firing", "driven machine on",
         ]  # fmt: skip
         found = [each.bounding_box() for each in events.locator("text").all()]
         for k, one in enumerate(found):

@@ -32,7 +32,7 @@ def marks(result: Result) -> list[Mark]:
     firing dead centre, as `crankmbs.motion.firings.firings` finds it, where there is one.
 
     >>> marks(simulate(load_scene("run_up").with_(run__until="0.1 s")))[0].words
-    'speed table on'
+    'starter on'
     """
     table, scene = result.event_table, result.scene
     names = [load.called for load in scene.torque]
