@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from crankmbs.errors import InputError
+from crankmbs.scene.forces import TravelTable
 from crankmbs.scene.tables import Header, Table, read_table
 
 COLUMNS = Header({"time_s": 1.0, "time_ms": 1e-3}, {"torque_Nm": 1.0})
@@ -99,6 +100,17 @@ def test_what_is_refused(tmp_path, text, rest):
     with pytest.raises(InputError) as caught:
         read(tmp_path, text)
     assert str(caught.value) == f"file {tmp_path / 'table.csv'}{rest}"
+
+
+def test_two_ways_in_place_of_one_are_named(tmp_path):
+    (tmp_path / "table.csv").write_text("displacement_mm,forward_kN,back_kN\n0,1,2\n")
+    with pytest.raises(InputError) as caught:
+        read_table(tmp_path / "table.csv", TravelTable.header)
+    assert str(caught.value) == (
+        f"file {tmp_path / 'table.csv'}: the header must name exactly one column force_N, or "
+        "forward_N and back_N, with commas between the columns; "
+        '"displacement_mm,forward_kN,back_kN" came'
+    )
 
 
 def test_an_open_quote_ends_with_its_line(tmp_path):

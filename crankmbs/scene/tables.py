@@ -47,6 +47,11 @@ class Header(NamedTuple):
         """What the first column holds, in words."""
         return self.holds.partition(" [")[0]
 
+    @property
+    def or_both(self) -> str:
+        """What may stand in place of one ordinate, in words."""
+        return f", or {' and '.join(self.ways)}" if self.ways else ""
+
 
 @dataclass(frozen=True)
 class Table:
@@ -179,9 +184,9 @@ def read_table(path: Path, header: Header, *, numbered: bool = False) -> Table |
     rows = _rows(path)
     names = rows[0][1]
     first = next(({name: header.x[name]} for name in header.x if name in names), header.x)
-    columns = [_column(path, names, first, header.way_out)]
+    columns = [_column(path, names, first, "", header.way_out)]
     several = [] if set(header.y) & set(names) else _several(path, names, header, numbered)
-    columns += several or [_column(path, names, header.y, header.way_out)]
+    columns += several or [_column(path, names, header.y, header.or_both, header.way_out)]
     x, *y = _values(path, rows, columns)
     return CylinderTable(x, tuple(y), str(path)) if several else Table(x, y[0], str(path))
 
@@ -267,13 +272,13 @@ def _cells(path: Path, line: int, text: str) -> list[str]:
 
 
 def _column(
-    path: Path, header: list[str], units: dict[str, float], way_out: str
+    path: Path, header: list[str], units: dict[str, float], instead: str, way_out: str
 ) -> tuple[int, float]:
     names = [name for name in header if name in units]
     if len(names) != 1:
         raise InputError(
-            f"file {path}: the header must name exactly one column {' | '.join(units)}, with "
-            f"commas between the columns; {shown(','.join(header))} came{way_out}"
+            f"file {path}: the header must name exactly one column {' | '.join(units)}{instead}, "
+            f"with commas between the columns; {shown(','.join(header))} came{way_out}"
         )
     return header.index(names[0]), units[names[0]]
 

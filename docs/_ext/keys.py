@@ -160,7 +160,8 @@ class _Found:
         elif isinstance(check, CsvFile):
             header = check.header
             names = [" or ".join(f"`{n}`" for n in side) for side in (header.x, header.y)]
-            self.rules.append(f"columns {' and '.join(names)}")
+            ways = " and ".join(f"`{n}`" for n in header.ways)
+            self.rules.append(f"columns {' and '.join(names)}{f', or {ways}' if ways else ''}")
         elif isinstance(one, Len):
             self.rules.append(f"at least {one.min_length}")
         elif type(one) in _BOUNDS:
