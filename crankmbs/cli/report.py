@@ -114,7 +114,7 @@ def _events(result: Result) -> list[str]:
     for time, angle, speed, text in rows[:_FIRST]:
         where = f"{time:.6g} s, {math.degrees(angle):.6g} deg, {speed / RPM:.6g} rpm"
         lines.append(f"{where}: {text}")
-    lines += ["..."] if len(rows) > _FIRST else []
+    lines += ["... the others are in events.csv"] if len(rows) > _FIRST else []
     said = [f"{'' if k else 'events':<12} {line}" for k, line in enumerate(lines)]
     if did_not_fire(result):
         why = "the crank reached no firing dead centre with fuel"
