@@ -9,6 +9,7 @@ import pytest
 from crankmbs import Constant, InputError, Run, load_scene, simulate
 from crankmbs.figures import plot, save_figures
 from crankmbs.figures.cycles import varies_strongly
+from crankmbs.measures.peaks import run_peaks
 from crankmbs.result.event_words import marks
 
 pytestmark = pytest.mark.slow
@@ -26,7 +27,7 @@ def words(ax):
 
 
 def test_a_start_is_marked_where_it_happens(start):
-    speed, torque = plot(start, "transient").axes
+    speed, torque, _ = plot(start, "transient").axes
     assert words(speed) == ["starter on", "starter off", "first firing", "last firing"]
     at = {text.get_text(): text.xy[0] for text in speed.texts}
     first, last = at["first firing"], at["last firing"]
@@ -73,14 +74,40 @@ def test_what_happens_after_many_reversals_is_marked():
     )
     result = simulate(late)
     assert np.count_nonzero(result.event_table.values("kind") == "reversal") > 8
-    speed, _ = plot(result, "transient").axes
+    speed, *_ = plot(result, "transient").axes
     assert "constant on" in words(speed)
-    assert len(speed.lines) == 2 + 8  # the speed, its zero, and the marks
+    assert len(speed.lines) == 2 + min(len(marks(result)), 24)  # the speed, its zero, the marks
 
 
 def test_a_crank_that_turns_back_has_its_last_firing_and_its_rest_marked():
-    speed, _ = plot(simulate(load_scene("run_down")), "transient").axes
-    assert {"last firing", "reversal", "rest"} == set(words(speed))
+    result = simulate(load_scene("run_down"))
+    speed, *_ = plot(result, "transient").axes
+    assert {"last firing", "reversal, 6 times", "rest"} == set(words(speed))
+    times = [line.get_xdata()[0] for line in speed.lines[2:]]
+    assert times == [mark.time for mark in marks(result)]
+
+
+def test_the_largest_loads_of_the_whole_run_are_marked(start):
+    *_, loads = plot(start, "transient").axes
+    peaks = {peak.name: peak for peak in reversed(run_peaks(start))}
+    largest = max(p.value.value for p in run_peaks(start) if p.name == "crank pin")
+    dots = [line.get_xydata()[0] for line in loads.lines if line.get_marker() == "o"]
+    tops = np.array([peaks["main bearing"].value.value, largest]) / 1e3
+    assert [y for _, y in dots] == pytest.approx(tops)
+    assert dots[0][0] == peaks["main bearing"].time
+    bearing, _, pin, _ = loads.lines[:4]
+    for line, (_, top) in zip((bearing, pin), dots, strict=True):
+        assert line.get_xdata()[0] == 0.0
+        assert 0.9 * top < line.get_ydata().max() <= top * (1.0 + 1e-9)
+    assert loads.texts[0].get_text().startswith("main bearing: ")
+
+
+def test_loads_of_a_speed_that_drifts_are_drawn_over_the_whole_run(tmp_path):
+    scene = load_scene("yi_diesel_free").with_(run__until="3 cycles", torque=())
+    result = simulate(scene)
+    assert not result.measures().steady
+    assert not varies_strongly(result)
+    assert "transient.png" in [file.name for file in save_figures(result, tmp_path)]
 
 
 def test_cycles_are_steps_and_events_stand_in_the_cycle_that_holds_them():
@@ -110,14 +137,14 @@ def test_it_is_drawn_where_the_speed_varies_strongly(start, tmp_path):
 
 
 def test_misfires_are_no_fuel_cut():
-    speed, _ = plot(simulate(load_scene("misfire")), "transient").axes
+    speed, *_ = plot(simulate(load_scene("misfire")), "transient").axes
     assert words(speed) == []
 
 
 def test_two_loads_of_one_kind_have_their_numbers():
     scene = load_scene("coasting")
     loads = (Constant(torque=0.1, until=0.2), Constant(torque=-0.1, after=0.3))
-    speed, _ = plot(simulate(replace(scene, torque=loads)), "transient").axes
+    speed, *_ = plot(simulate(replace(scene, torque=loads)), "transient").axes
     assert words(speed) == ["constant 1 on", "constant 1 off", "constant 2 on"]
 
 

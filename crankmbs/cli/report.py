@@ -117,7 +117,7 @@ def _events(result: Result) -> list[str]:
         for time, angle, speed, text in rows[:_FIRST]
     ]
     shown = table(_EVENT_HEADINGS, lines).splitlines() if lines else []
-    shown += ["... (all in events.csv)"] if len(rows) > _FIRST else []
+    shown += ["... the others are in events.csv"] if len(rows) > _FIRST else []
     said += [f"{'':<12} {line}" for line in shown]
     if did_not_fire(result):
         why = "the crank reached no firing dead centre with fuel"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from crankmbs.figures.style import (
     COLOURS,
     STYLE,
     footer,
+    force_scale,
     keep_flat,
     legend,
     line_of,
@@ -21,7 +23,7 @@ from crankmbs.figures.style import (
     whose,
 )
 from crankmbs.figures.view import exactness, over_time
-from crankmbs.measures.peaks import torque_of_rods
+from crankmbs.measures.peaks import run_peaks, torque_of_rods
 from crankmbs.motion.labels import Table
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
@@ -31,10 +33,11 @@ from crankmbs.scene.units import BAR, RPM
 __all__ = ["FEWEST_CYCLES", "cycles_figure", "mark_events", "transient_figure", "varies_strongly"]
 
 FEWEST_CYCLES = 4  # fewer are seen in the figures of the run
-_MOST_MARKS = 8  # events that can be told apart in a panel
+_MOST_MARKS = 24  # events that can be told apart in a panel
 _LABEL = 0.1  # of a panel's width, what the words of an event take
 _HAIR = 1e-9  # of a cycle: an event at its begin or end may be so far outside by rounding
 _HEAD = 0.3  # of a panel's height, kept free above the curve for them
+_JOINTS = {"main bearing": "main_bearing_force", "crank pin": "crank_pin_force"}
 _STRONGLY = 0.5  # of the highest speed: in a start, a run-up, a run-down, a crank that turns back
 
 
@@ -71,6 +74,7 @@ def cycles_figure(result: Result) -> Figure:
     named = marks(result)
     mark_events(axes[0], named, _among(np.array([mark.time for mark in named]), cycles))
     for ax in axes:
+        ax.set_xlim(edges[0], edges[-1])
         ax.locator_params("x", integer=True)
     axes[-1].set_xlabel("cycle")
     legend(figure, *(axes if double or len(result.scene.cylinders) > 1 else axes[:1]))
@@ -92,7 +96,7 @@ def _among(time: Array, cycles: Table) -> Array:
 
 def mark_events(ax: Axes, named: list[Mark], at: Array) -> None:
     """Thin labelled lines at the first marks of a run, each word at least once; those of one word
-    so close that their words would cover one another are named once.
+    so close that their words would cover one another have one label, which says how many they are.
 
     at : shape (n,), where each stands on the panel's axis
     """
@@ -104,24 +108,28 @@ def mark_events(ax: Axes, named: list[Mark], at: Array) -> None:
     if shown:
         bottom, top = ax.get_ylim()
         ax.set_ylim(bottom, top + _HEAD * (top - bottom))
-    labelled: dict[str, float] = {}
+    groups: list[list[int]] = []
     for k in shown:
         ax.axvline(at[k], color="0.35", linewidth=0.9, linestyle=":", zorder=1)
-        if abs(labelled.get(words[k], np.inf) - at[k]) < _LABEL * (high - low):
-            continue
-        left = at[k] > high - _LABEL * (high - low)
+        before = next((group for group in reversed(groups) if words[group[0]] == words[k]), None)
+        if before and abs(at[before[-1]] - at[k]) < _LABEL * (high - low):
+            before.append(k)
+        else:
+            groups.append([k])
+    for number, group in enumerate(groups):
+        first = at[group[0]]
+        left = first > high - _LABEL * (high - low)
         ax.annotate(
-            words[k],
-            (at[k], 1.0),
+            words[group[0]] + (f", {len(group)} times" if len(group) > 1 else ""),
+            (first, 1.0),
             xycoords=("data", "axes fraction"),
-            xytext=(-2 if left else 2, -12 * (1 + len(labelled) % 4)),
+            xytext=(-2 if left else 2, -12 * (1 + number % 4)),
             textcoords="offset points",
             horizontalalignment="right" if left else "left",
             fontsize=9,
             color="0.35",
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8},
         )
-        labelled[words[k]] = float(at[k])
 
 
 def varies_strongly(result: Result) -> bool:
@@ -132,16 +140,18 @@ def varies_strongly(result: Result) -> bool:
 
 @rc_context(STYLE)
 def transient_figure(result: Result) -> Figure:
-    """Crank speed, and the torque of gas and inertia beside that of loads and drive, over time."""
-    names = "time", "crank_speed", "crank_torque", "external_torque"
-    time, speed, torque, outside = map(over_time(result).__getitem__, names)
-    total = torque_of_rods(result.scene)
-    figure, axes = panels(2, 1, 10.0, 8.0)
-    axes[0].plot(time, speed / RPM, color=COLOURS[0], linewidth=1.2)
+    """Crank speed, the torque of gas and inertia beside that of loads and drive, and the loads of
+    main bearing and crank pin with the largest of each marked, over time."""
+    curves = over_time(result)
+    time, torque = curves["time"], curves["crank_torque"]
+    figure, axes = panels(3, 1, 10.0, 11.0)
+    axes[0].plot(time, curves["crank_speed"] / RPM, color=COLOURS[0], linewidth=1.2)
     axes[0].set_ylabel("crank speed [rpm]")
-    axes[1].plot(time, torque.sum(axis=1), color=COLOURS[4], linewidth=0.6, label=total)
+    total, outside = torque_of_rods(result.scene), curves["external_torque"]
+    axes[1].plot(time, torque.sum(axis=1), color=COLOURS[0], linewidth=1.0, label=total)
     axes[1].plot(time, outside, color=COLOURS[1], linewidth=1.5, label="load and drive torque")
-    axes[1].set_ylabel("torque on the crank [N m]")
+    axes[1].set_ylabel("torque on the crank, positive\nin the sense of +theta [N m]")
+    _loads(axes[2], result, curves)
     for ax in axes:
         ax.axhline(0.0, color="0.55", linewidth=1.0)
         ax.tick_params(labelbottom=ax is axes[-1])
@@ -149,8 +159,43 @@ def transient_figure(result: Result) -> Figure:
         named = marks(result)
         mark_events(axes[0], named, np.array([mark.time for mark in named]))
     axes[-1].set_xlabel("time [s]")
-    legend(figure, axes[1])
+    legend(figure, *axes[1:])
     figure.align_ylabels(axes)
-    exact = exactness(result.variables, *names[1:])
-    footer(figure, result, "crank speed and torque on the crank over the whole run", exact)
+    drawn = "crank_speed", "crank_torque", "external_torque", *_JOINTS.values()
+    about = "crank speed, torque on the crank and bearing loads over the whole run"
+    footer(figure, result, about, exactness(result.variables, *drawn))
     return figure
+
+
+def _loads(ax: Axes, result: Result, curves: dict[str, Array]) -> None:
+    """The loads over time, of several crank pins the largest, with the largest of each marked."""
+    many = len(result.scene.cylinders) > 1
+    forces = {}
+    for joint, name in _JOINTS.items():
+        force = np.hypot(curves[f"{name}_x"], curves[f"{name}_y"])
+        forces[joint] = force.reshape(len(force), -1).max(axis=1)
+    scale, unit = force_scale(*forces.values())
+    peaks = run_peaks(result) if result.motion is not None else ()
+    for number, (joint, force) in enumerate(forces.items()):
+        colour = COLOURS[2 + number]
+        label = f"{joint}, the largest of all" if many and joint == "crank pin" else joint
+        ax.plot(curves["time"], force / scale, color=colour, linewidth=1.0, label=label)
+        tops = [peak for peak in peaks if peak.name == joint]
+        if not tops:
+            continue
+        top = max(tops, key=lambda peak: peak.value.value)
+        size = top.value.value / scale
+        where = math.degrees(top.crank_angle % result.scene.period)
+        ax.plot(top.time, size, "o", color=colour, markersize=5, zorder=4)
+        right = top.time > 0.5 * (curves["time"][0] + curves["time"][-1])
+        ax.annotate(
+            f"{joint}: {size:.4g} {unit} at {top.time:.4g} s, {where:.6g} deg",
+            (top.time, size),
+            xytext=(-8 if right else 8, -12 * number),
+            textcoords="offset points",
+            horizontalalignment="right" if right else "left",
+            verticalalignment="center",
+            fontsize=9,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8},
+        )
+    ax.set_ylabel(f"bearing load [{unit}]")

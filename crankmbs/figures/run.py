@@ -106,7 +106,7 @@ def _missing(result: Result, cycles: int, fewest: int) -> dict[str, str]:
 def save_figures(result: Result, folder: Path) -> list[Path]:
     """Draw every figure of a result into PNG files, which appear together; the cycles where there
     are more than three, or several in a settled period, the bearings and the pressure where a scene
-    has them, the whole run over time where its speed varies strongly.
+    has them, the whole run over time where its speed varies strongly or is not periodic.
 
     Raises
     ------
@@ -116,7 +116,7 @@ def save_figures(result: Result, folder: Path) -> list[Path]:
     cycles = 0 if result.keep is None else result.cycle_table.length
     fewest = 2 if result.scene.settles else FEWEST_CYCLES  # what differs in a settled period
     missing = set(_missing(result, cycles, fewest))
-    if not varies_strongly(result):
+    if not varies_strongly(result) and (result.motion is None or result.measures().steady):
         missing.add("transient")
     names = [name for name in _FIGURES if name not in missing]
     with together(folder) as part:
