@@ -94,7 +94,7 @@ def test_its_settled_motion_is_the_limit_of_its_run(load):
     long = simulate(scene.with_(run__until="36 rev"))
     period = settled.data["crank_speed"].values
     np.testing.assert_allclose(long.data["crank_speed"].values[-len(period) :], period, rtol=1e-8)
-    assert measure(settled).window.kind == "settled period"
+    assert measure(settled).window.kind == "last period"
     assert measure(settled).speed_gain.value == pytest.approx(0.0, abs=1e-8)
 
 

@@ -181,4 +181,5 @@ def test_on_the_command_line(tmp_path, monkeypatch):
     lines = (tmp_path / "here" / "balance.csv").read_text().splitlines()
     assert len(lines) == 7
     assert 'center_of_mass = "' in done.stdout
+    assert "moving parts on the frame, engine's X and Y\n" in done.stdout  # nothing rocks
     assert "--share: " in refused("balance", "yi_diesel", "--share", "150%")

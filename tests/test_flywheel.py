@@ -206,6 +206,7 @@ def test_the_command(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     shown = crankmbs_("flywheel", "yi_diesel_free", "--fluctuation", "1 %", "-o", "heavy.toml")
     assert shown.exit_code == 0, shown.output
+    assert "over the last cycle" in shown.output
     (peak,) = re.findall(r"^crank pin \[N\] +(\S+) +\S+ +(\S+) ", shown.output, re.MULTILINE)
     assert [float(part) for part in peak] == pytest.approx([20289.4, 20516.4], abs=0.1)
     assert (tmp_path / "results" / "yi_diesel_free" / "flywheel.png").exists()

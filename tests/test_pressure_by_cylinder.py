@@ -81,6 +81,18 @@ def test_a_sequence_runs_one_cycle_after_the_other_then_again():
     np.testing.assert_allclose(peaks, shares * RISE[37], rtol=1e-9)
 
 
+@pytest.mark.parametrize("every", ["1 deg", "none"])
+def test_a_run_of_a_sequence_is_summed_up_over_all_of_its_cycles(every):
+    """The strongest of three is the third; a run of seven ends with the first."""
+    scene = with_gas(pressure=CYCLES, cycles="sequence")
+    found = measure(simulate(scene.with_(run__until="7 cycles", run__every=every)))
+    assert found.window.kind == "last period"
+    assert found.window.angle == pytest.approx(6.0 * TURN)
+    highest = max(peak.value.value for peak in found.peaks if peak.name == "gauge pressure")
+    assert highest == pytest.approx(pressures_of(scene)[0].peak[1], rel=1e-9)
+    assert measure(simulate(scene)).window.kind == "last cycle"
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "formulation"),

@@ -109,7 +109,7 @@ def test_the_factor_is_what_a_run_loses_in_a_cycle():
 
 def test_measures_are_over_the_whole_period():
     found = measure(simulate(settled(FUELS["every 2"])))
-    assert found.window.kind == "settled period"
+    assert found.window.kind == "last period"
     assert abs(found.window.angle) == pytest.approx(2.0 * FOUR.period)
     assert abs(found.speed_gain.value) <= found.speed_gain.error
     fires, burns = (found.imep[k].value for k in (0, 1))
@@ -180,8 +180,8 @@ def test_orders_are_over_the_whole_period():
     assert split.mean == pytest.approx(speed.mean(), rel=1e-8)  # rows at each degree: an alias
     assert np.abs(waves[0]) > 0.1 * np.abs(waves).max()  # the misfire's own order, of two cycles
     engine = engine_orders(found, 4.0)
-    assert engine.window.kind == "settled period"
-    assert "orders over the settled period" in orders_report(engine)
+    assert engine.window.kind == "last period"
+    assert "orders over the last period" in orders_report(engine)
 
 
 @pytest.mark.slow

@@ -90,7 +90,7 @@ def _crank(scene: Scene, weights: Balance, cost_cap: float) -> list[str]:
         scene.with_(**{f"crank__{key}": value for key, value in values.items()}), cost_cap=cost_cap
     )
     return [
-        loads_table("the last cycle", measure(weights.result), measure(after), "after"),
+        loads_table(measure(weights.result), measure(after), "after"),
         "",
         "[crank]",
         *(f'{key} = "{value}"' for key, value in values.items()),
@@ -111,6 +111,8 @@ def _share(text: str) -> float:
 
 
 def _report(name: str, weights: Balance) -> str:
+    from crankmbs.measures.span import measured_span
+
     rows = [
         [
             f"{force.quantity}, {force.direction} [{force.units}]",
@@ -120,6 +122,8 @@ def _report(name: str, weights: Balance) -> str:
         ]
         for force in weights.remaining
     ]
+    rocks = any("rocking" in force.quantity for force in weights.remaining)
+    about = "; rocking about the middle of the crank" if rocks else ""
     return "\n".join(
         [
             heading(name, weights.result.scene.title),
@@ -132,8 +136,8 @@ def _report(name: str, weights: Balance) -> str:
             ),
             f"  {_of_crank(weights):41}  {digits(abs(weights.of_crank))} kg m",
             "",
-            table(["over the last cycle", "order", *_ERRORS], rows),
-            "moving parts on the frame, engine's X and Y; rocking about the middle of the crank",
+            table([f"over the {measured_span(weights.result).kind}", "order", *_ERRORS], rows),
+            f"moving parts on the frame, engine's X and Y{about}",
         ]
     )
 

@@ -90,7 +90,7 @@ def _loads(wheel: Flywheel, before: Measures | None) -> str:
     """Bearing loads with the scene's inertia, if it has any, and with the one that was sized."""
     from crankmbs.measures import measure
 
-    return loads_table("the settled cycle", before, measure(wheel.result), "with it")
+    return loads_table(before, measure(wheel.result), "with it")
 
 
 def _drawn(scene: Scene, wheel: Flywheel, folder: Path) -> str:
@@ -134,6 +134,8 @@ def _written(path: Path, scene: Scene, wheel: Flywheel, file: Path) -> tuple[Pat
 
 
 def _report(name: str, scene: Scene, wheel: Flywheel, before: Measures | None) -> str:
+    from crankmbs.measures.span import measured_span
+
     lines = [
         f"{heading(name, scene.title)}\n",
         f"{'flywheel':<12} {wheel.message}",
@@ -162,7 +164,7 @@ def _report(name: str, scene: Scene, wheel: Flywheel, before: Measures | None) -
         *moving,
         _row("the formula is off by [%]", wheel.lecture_error, 100.0, most=3),
     ]
-    headings = ["over the settled cycle", "value, to 6 digits", "num. error"]
+    headings = [f"over the {measured_span(wheel.result).kind}", "value, to 6 digits", "num. error"]
     return "\n".join([*lines, "", table(headings, rows)])
 
 

@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 __all__ = ["loads_table"]
 
 
-def loads_table(over: str, before: Measures | None, after: Measures, words: str) -> str:
+def loads_table(before: Measures | None, after: Measures, words: str) -> str:
     """The largest peak of every kind of joint that bears a load; dashes where there is no motion
     before; empty where there is no load.
 
-    over : the window; words : what is changed, as a heading
+    words : what is changed, as a heading
     """
     rows = []
     for joint in dict.fromkeys(force.joint for force in after.joints):
@@ -32,5 +32,6 @@ def loads_table(over: str, before: Measures | None, after: Measures, words: str)
             cells += [digits(*largest.peak), error_digits(largest.peak.error)]
         if any(j.peak.value > 0.0 for j in after.joints if j.joint == joint):
             rows.append([f"{joint} [N]", *cells])
-    heading = [f"largest load over {over}", "before", "num. error", words, "num. error"]
+    over = f"largest load over the {after.window.kind}"
+    heading = [over, "before", "num. error", words, "num. error"]
     return table(heading, rows) if rows else ""

@@ -75,7 +75,8 @@ _EVENT_HEADINGS = ["event", "time [s]", "crank angle [deg]", "crank speed [rpm]"
 def _about(result: Result, measures: Measures) -> str:
     time, angle, speed = map(result.sampled, ("time", "crank_angle", "crank_speed"))
     turned = (angle[-1] - angle[0]) / (2.0 * math.pi)
-    extent = "" if result.scene.run.every is not None else "; only the last cycle is kept"
+    last = "last period" if measures.window.kind == "last period" else "last cycle"
+    extent = "" if result.scene.run.every is not None else f"; only the {last} is kept"
     sense = ", backwards" if turned < 0.0 else ""
     samples = f"{len(time)}, {time[0]:.6g} to {time[-1]:.6g} s, {turned:.6g} rev{sense}{extent}"
     return "\n".join(

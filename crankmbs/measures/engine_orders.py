@@ -49,7 +49,7 @@ class EngineOrders:
 
 
 def engine_orders(result: Result, highest: float = 12.0) -> EngineOrders:
-    """Orders of torque and frame force over the last whole cycle of a run, or its settled period.
+    """Orders of torque and frame force over the last whole cycle of a run, or the last period.
 
     "torque" is that of all rods on the crank; "inertia torque" what of it comes neither from the
     gas, the friction and the forces from outside on the pistons nor from the weights of rods and

@@ -68,7 +68,7 @@ def orders(result: Result, name: str, highest: float = 12.0) -> Orders:
 
 
 class Harmonics:
-    """The last whole cycle of a run, or its settled period, for the orders of many quantities.
+    """The last whole cycle of a run, or the last period, for the orders of many quantities.
 
     Raises
     ------

@@ -12,7 +12,7 @@ from crankmbs.result import Result
 
 __all__ = ["CYCLES", "TURNS_BACK", "Span", "last_span", "measured_span", "passes_over"]
 
-CYCLES = "last cycle", "last period", "settled period"
+CYCLES = "last cycle", "last period"
 """Kinds of spans that are whole cycles."""
 TURNS_BACK = "last swings"
 """The kind in which the crank rests or turns back."""
@@ -24,9 +24,9 @@ _SAME_ANGLE = 1e-9  # rad: rounding of start + k * every must not lose a cycle
 class Span:
     """A stretch of a run up to its end.
 
-    kind : "last cycle", "last revolution" or "whole run"; of several cycles "settled period", or
-        "last period" under loads over the angle that come again after them; "last swings" where the
-        crank rests or turns back in it: from where it last was so far from where it ends
+    kind : "last cycle", "last revolution" or "whole run"; of several cycles that come again
+        together "last period"; "last swings" where the crank rests or turns back in it: from where
+        it last was so far from where it ends
     begin, end [s]; angle : crank angle turned between them [rad], negative backwards
     first : number of the last sample at or before ``begin``
     inside : number of the first sample at or after ``begin``
@@ -61,16 +61,15 @@ def last_span(result: Result) -> Span:
 
 
 def measured_span(result: Result) -> Span:
-    """What a run is summed up over: of a settled motion its whole period, else the last one of the
-    engine with its loads over the angle, else the `last_span`."""
+    """What a run is summed up over: where cycles differ and come again together, by a sequence of
+    pressures, misfires "every n" or loads over the angle, its last whole period; without one that
+    of the loads, else the `last_span`."""
     scene = result.scene
-    kind, wanted = "last period", scene.load_period
-    if scene.settles and result.status == 0:
-        kind, wanted = "settled period", scene.settled_period
-    if wanted > scene.period + _SAME_ANGLE:
-        whole = _ending(result, kind, wanted)
-        if whole is not None:
-            return whole
+    for period in scene.settled_period, scene.load_period:
+        if period > scene.period + _SAME_ANGLE:
+            whole = _ending(result, "last period", period)
+            if whole is not None:
+                return whole
     return last_span(result)
 
 

@@ -146,8 +146,8 @@ class Measures:
 
 
 def measure(result: Result) -> Measures:
-    """Sum up a run over its last whole cycle (or revolution, or the run), under loads over the
-    angle of a longer period over that; a settled motion over its period.
+    """Sum up a run over its last whole cycle (or revolution, or the run); where cycles differ and
+    come again together, as a sequence does, over their last whole period.
 
     Every number is read from the motion as it was solved (`crankmbs.measures.nodes`). Its error is
     what the same number of the motion that checks it differs by, and the rounding of what it is

@@ -173,7 +173,8 @@ def plan_of(scene: Scene) -> Plan:
     until, until_time = scene.end
     folds = folds_of(scene, start)
     if scene.run.every is None:
-        last = scene.period + _LESS * DEGREE
+        last = scene.settled_period if until_time or until >= scene.settled_period else scene.period
+        last += _LESS * DEGREE
         return Plan(start, DEGREE, False, until, until_time, last, folds)
     every, in_time = scene.run.every.resolve(scene.period)
     cylinders = len(scene.cylinders)

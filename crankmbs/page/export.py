@@ -51,7 +51,7 @@ def exported(scene: Scene) -> dict[str, Any]:
         "force": [_force(force) for force in scene.force],
         "fuel": None if scene.fuel is None else _fuel(scene.fuel),
         "period": scene.period,
-        "load_period": scene.load_period,
+        "periods": [scene.settled_period, scene.load_period, scene.period],
         "grid_period": _grid_period(scene, train),
         "start": None if scene.start is None else _fields(scene.start, "angle", "speed"),
         "motion": None if scene.motion is None else _motion(scene.motion),

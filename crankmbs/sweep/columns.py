@@ -119,7 +119,7 @@ def samples_of(scene: Scene) -> int:
     """
     end, in_time = scene.end
     if scene.run.every is None:
-        return math.ceil(math.degrees(scene.period)) + 3
+        return math.ceil(math.degrees(scene.settled_period)) + 3
     every, every_in_time = scene.run.every.resolve(scene.period)
     if every_in_time != in_time:
         raise InputError(

@@ -17,17 +17,16 @@ const JOINTS = {
 };
 
 /** Over what the motion of a scene that turns from `from` to `to` [rad] is measured: its last
- * period with the loads, or the one that it settles to. */
+ * period after which all comes again, without one that of the loads, or the last cycle. */
 export function measuredSpan(scene, from, to) {
-  const period = scene.run.settled ? scene.grid_period : scene.load_period;
-  return lastSpan(from, to, Math.max(period, scene.period));
+  return lastSpan(from, to, ...scene.periods);
 }
 
-/** The last whole period of a motion that turns from `from` to `to` [rad]; without one the last
- * whole revolution, or else all of it. */
-export function lastSpan(from, to, period) {
+/** The last whole period of a motion that turns from `from` to `to` [rad], the first of those that
+ * it holds; without one the last whole revolution, or else all of it. */
+export function lastSpan(from, to, ...periods) {
   const turned = Math.abs(to - from);
-  const whole = [period, 2 * Math.PI].find((each) => turned >= each - 1e-9);
+  const whole = [...periods, 2 * Math.PI].find((each) => turned >= each - 1e-9);
   return { from: whole === undefined ? from : to - Math.sign(to - from) * whole, to };
 }
 
