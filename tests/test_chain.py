@@ -73,7 +73,11 @@ def test_every_order_adds_up_to_formula_minus_run(swinging, order, count):
 def test_the_totals_are_those_of_the_comparison(swinging):
     found, rows = budget(swinging, OWN, chain=["gravity", "series"]), compare(swinging, OWN)
     for split in found.splits:
-        assert split.total.size == rows.row(split.quantity, split.reference).size
+        row = rows.row(split.quantity, split.reference)
+        assert np.array_equal(split.total.curve, row.error)
+        assert split.total.size.rms == row.size.rms
+        # the points between the samples follow from the curves, and the causes are more of them
+        assert split.total.size.largest == pytest.approx(row.size.largest, rel=2e-5)
 
 
 def test_what_a_cause_is_worth_depends_on_what_still_stands(swinging):

@@ -271,5 +271,5 @@ def test_of_equal_maxima_the_first_in_the_cycle_counts():
 
 def test_a_curve_of_zeros_and_a_single_sample_have_sizes():
     assert size_of(np.zeros(3), np.arange(3.0), 1.0)[:2] == (0.0, 0.0)
-    assert size_of(np.array([-2.0]), np.array([7.0]), 4.0) == (2.0, 2.0, 3.0, 0)
+    assert size_of(np.array([-2.0]), np.array([7.0]), 4.0) == (2.0, 2.0, 3.0)
     assert math.isnan(percent(1.0, 0.0))

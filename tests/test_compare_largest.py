@@ -7,7 +7,7 @@ import pytest
 
 from crankmbs import load_scene, simulate
 from crankmbs.batch.rows import rows_of
-from crankmbs.compare import LECTURES, QUANTITIES, compare, largest_deviations
+from crankmbs.compare import LECTURES, QUANTITIES, budget, compare, largest_deviations
 from validation.random_settled import random_settled
 
 DIESEL = load_scene("propeller")
@@ -63,3 +63,50 @@ def test_where_nothing_checks_the_motion_their_errors_are_unknown():
     result = simulate(DIESEL)
     alone = replace(result, motion=lambda: result.passes._replace(checks=()))
     assert {one.error for one in largest_deviations(alone).values()} == {np.inf}
+
+
+@pytest.mark.parametrize("name", ["propeller", "grega_lecture", "compressor"])
+def test_a_comparison_and_a_budget_have_them_between_their_samples(name):
+    """Nearer than samples 1 degree apart are."""
+    result = simulate(load_scene(name).with_(run__every="1 deg"))
+    rows = {(row.reference, row.quantity): row for row in compare(result).rows}
+    splits = {(split.reference, split.quantity): split for split in budget(result).splits}
+    found, missed = largest_deviations(result), 0.0
+    for pair, one in found.items():
+        row = rows[pair]
+        assert one.value == pytest.approx(row.size.largest / row.peak, rel=1e-4, abs=1e-9), pair
+        if pair in splits and row.size.largest > 1e-6 * row.peak:
+            total = splits[pair].total.size.largest / splits[pair].peak
+            assert one.value == pytest.approx(total, rel=1e-4), pair
+        sampled = np.max(np.abs(row.error)) / np.max(np.abs(row.values - row.error))
+        missed = max(missed, abs(sampled / one.value - 1.0) if one.value > 1e-6 else 0.0)
+    assert missed > 2e-4
+
+
+def test_the_peak_beside_which_a_deviation_stands_is_that_of_the_run():
+    result = simulate(load_scene("propeller").with_(run__every="1 deg"))
+    joints = {(joint.joint, joint.number): joint.peak.value for joint in result.measures().joints}
+    for found in (compare(result).rows, budget(result).splits):
+        peak = {row.quantity: row.peak for row in found}
+        assert peak["side thrust"] == pytest.approx(joints["side force", 1], rel=1e-6)
+        # the force across the cylinder is small where that along it is largest
+        assert peak["piston pin force x"] == pytest.approx(joints["piston pin", 1], rel=1e-3)
+
+
+def test_a_formula_that_sums_over_the_samples_is_taken_at_them_alone():
+    """Between the samples it would be another; one of the angle alone is taken there, too."""
+
+    def side_thrust(phi, gas_force, rod_ratio):
+        return gas_force * rod_ratio * np.sin(phi)
+
+    def side_thrust_of_harmonics(phi, gas_force, rod_ratio):
+        curve = side_thrust(phi, gas_force, rod_ratio)
+        return np.fft.irfft(np.fft.rfft(curve)[:40], len(curve)) if len(curve) > 700 else 1.0 / 0.0
+
+    result = simulate(load_scene("propeller").with_(run__every="1 deg"))
+    functions = {f.__name__: f for f in (side_thrust, side_thrust_of_harmonics)}
+    found = compare(result, functions)
+    alone = found.row("side thrust", "side_thrust")
+    assert alone.size.largest > np.max(np.abs(alone.error))
+    harmonics = found.row("side thrust", "side_thrust_of_harmonics")
+    assert harmonics.size.largest == np.max(np.abs(harmonics.error))

@@ -72,7 +72,9 @@ def test_what_the_lectures_say_comes_out_alike(four, cylinder, function, quantit
     mine, theirs = found.row(quantity, "mine"), found.row(quantity, reference)
     assert mine.values == pytest.approx(theirs.values, abs=ROUNDING * theirs.peak)
     assert mine.error == pytest.approx(mine.values - found.simulated[quantity], abs=0.0)
-    assert mine.size.largest == np.max(np.abs(mine.error))
+    assert mine.size.largest >= np.max(np.abs(mine.error))
+    if reference != CLOSED_FORM:
+        assert mine.size == pytest.approx(theirs.size, rel=1e-9)  # between the samples, too
     assert found.references == (CLOSED_FORM, *LECTURES, "mine")
     if reference != CLOSED_FORM:
         assert mine.size.largest > 1e-3 * mine.peak
@@ -101,11 +103,12 @@ def test_a_formula_of_the_whole_engine_sees_every_cylinder(four):
     shapes: dict[str, tuple[tuple[int, ...], ...]] = {}
 
     def torque_from_gas(phi, gas_force, theta, gravity_x):
-        shapes["one"] = (phi.shape, gas_force.shape, theta.shape)
+        shapes.setdefault("one", (phi.shape, gas_force.shape, theta.shape))
         return 0.0 * phi
 
     def frame_force_x(phi, gas_force, friction_force, theta, cylinders):
-        shapes["all"] = (phi.shape, gas_force.shape, friction_force.shape, theta.shape)
+        every = phi.shape, gas_force.shape, friction_force.shape, theta.shape
+        shapes.setdefault("all", every)  # at the samples, then between them
         assert np.allclose(phi[:, 2] - theta, four.scene.cylinders[2].phase, atol=1e-9)
         assert not friction_force.any()
         return 0.0 * theta + cylinders

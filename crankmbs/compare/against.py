@@ -6,8 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
+from crankmbs.compare.between import with_points_between
 from crankmbs.compare.excerpt import Answer, Excerpt, LeftOut, excerpt_of, vanishing
 from crankmbs.compare.formula import CLOSED_FORM, Formula, formulas_of, variables_of
 from crankmbs.compare.lectured import LECTURES, row_of
@@ -15,6 +14,7 @@ from crankmbs.compare.numbers import NUMBERS, Number
 from crankmbs.compare.quantities import QUANTITIES
 from crankmbs.compare.size import Size
 from crankmbs.errors import InputError
+from crankmbs.mechanics.peaks import peak
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 __all__ = ["Comparison", "Deviation", "compare"]
+
+_RUN = "run"  # among references, the run itself
 
 
 @dataclass(frozen=True)
@@ -31,7 +33,8 @@ class Deviation:
     values : shape (n,) [unit], of the reference; error : shape (n,) [unit], reference minus run
     size : maximum and RMS of the error [unit], and the angle of the maximum: the cylinder's cycle
         angle, for the main bearing the crank angle
-    peak [unit] : largest magnitude in the run
+    peak [unit] : largest magnitude in the run; both maxima between the samples, too, but for those
+        of the closed form, and of a formula of the user whose value at an angle depends on others
     """
 
     quantity: str
@@ -168,11 +171,16 @@ def compare(
     zero = vanishing([simulated, *references.values()])
     left_out += [LeftOut(name, "", reason) for name, reason in zero.items()]
     nonzero = {name: curve for name, curve in simulated.items() if name not in zero}
-    rows = tuple(
-        _deviation(excerpt, reference, name, curve, answer[name])
+    errors = {
+        (reference, name): answer[name] - curve
         for reference, answer in references.items()
         for name, curve in nonzero.items()
         if name in answer
+    }
+    sizes, peaks = _sizes(excerpt, nonzero, errors, curves)
+    rows = tuple(
+        Deviation(name, reference, references[reference][name], error, size, peaks[name])
+        for ((reference, name), error), size in zip(errors.items(), sizes, strict=True)
     )
     numbers = _numbers([f for f in user_formulas if f.is_number], excerpt, left_out)
     return Comparison(excerpt, nonzero, rows, numbers, tuple(left_out))
@@ -196,15 +204,36 @@ def _numbers(
     return tuple(numbers)
 
 
-def _deviation(
-    excerpt: Excerpt, reference: str, quantity: str, simulated: Array, values: Array
-) -> Deviation:
-    error = values - simulated
-    return Deviation(
-        quantity=quantity,
-        reference=reference,
-        values=values,
-        error=error,
-        size=excerpt.size(quantity, error),
-        peak=float(np.max(np.abs(simulated))),
-    )
+def _sizes(
+    excerpt: Excerpt,
+    simulated: Answer,
+    errors: dict[tuple[str, str], Array],
+    formulas: list[Formula],
+) -> tuple[list[Size], dict[str, float]]:
+    """Sizes of errors, reference by reference, and largest magnitudes of the run, both between the
+    samples as far as their curves are known there."""
+    by_angle = {
+        formula.label: formula
+        for formula in formulas
+        if (formula.label, formula.quantity) in errors and formula.depends_on_angle_alone(excerpt)
+    }
+    known = {pair: error for pair, error in errors.items() if pair[0] in {*LECTURES, *by_angle}}
+
+    def evaluate(points: Excerpt) -> dict[tuple[str, str], Array]:
+        run = points.simulated()
+        answers = {name: {one.quantity: one.curve(points)} for name, one in by_angle.items()}
+        for name in dict.fromkeys(reference for reference, _ in known):
+            if name in LECTURES:
+                answers[name] = points.lecture(LECTURES[name], constant_speed=True)
+        between = {(_RUN, name): run[name] for name in simulated}
+        return between | {(name, of): answers[name][of] - run[of] for name, of in known}
+
+    runs = {(_RUN, name): curve for name, curve in simulated.items()}
+    points, curves = with_points_between(excerpt, runs | known, evaluate)
+    sizes = [
+        excerpt.size_with(points, pair[1], error, curves[pair])
+        if pair in curves
+        else excerpt.size(pair[1], error)
+        for pair, error in errors.items()
+    ]
+    return sizes, {name: peak(curves[_RUN, name]) for name in simulated}

@@ -5,20 +5,23 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-import numpy as np
-
+from crankmbs.compare.between import with_points_between
 from crankmbs.compare.chain import REST, Idealized, checked_chain
-from crankmbs.compare.excerpt import Answer, LeftOut, excerpt_of, vanishing
+from crankmbs.compare.excerpt import Answer, Excerpt, LeftOut, excerpt_of, vanishing
 from crankmbs.compare.formula import Formula, formulas_of, variables_of
 from crankmbs.compare.lectured import LECTURES, S1
 from crankmbs.compare.quantities import QUANTITIES
 from crankmbs.compare.split import Budget, Cause, Split
 from crankmbs.errors import InputError
+from crankmbs.mechanics.peaks import peak
+from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
 __all__ = ["budget"]
 
 _UNTRUNCATED, _, _TRUNCATED = LECTURES
+_RUN, _TOTAL = "run", "total"
+_Curve = tuple[str, str, str]  # reference or _RUN, quantity, cause or _TOTAL
 _NO_BUDGET = "the causes are of forces and of the piston's motion at the run's own speed"
 
 
@@ -95,11 +98,23 @@ def budget(
     evaluations = [_lecture(ideal, left_out), *_users(curves, ideal, from_datum, left_out)]
     zero = vanishing([ideal.run, ideal.closed_form, *(e.values for e in evaluations)])
     left_out += [LeftOut(name, "", reason) for name, reason in zero.items()]
+    nonzero = [name for name in ideal.run if name not in zero]
+    by_angle = [formula for formula in curves if formula.depends_on_angle_alone(excerpt)]
+
+    def evaluate(points: Excerpt) -> dict[_Curve, Array]:
+        there = Idealized(points)
+        known = [_lecture(there, []), *_users(by_angle, there, from_datum, [])]
+        return _curves(there, causes, known, nonzero)
+
+    at_samples = _curves(ideal, causes, evaluations, nonzero)
+    labels = {_RUN, *LECTURES, *(formula.label for formula in by_angle)}
+    known = {key: curve for key, curve in at_samples.items() if key[0] in labels}
+    points, between = with_points_between(excerpt, known, evaluate)
     splits = tuple(
-        _split(ideal, causes, evaluation, name)
+        _split(evaluation, name, (excerpt, at_samples), (points, between))
         for evaluation in evaluations
         for name in evaluation.values
-        if name not in zero
+        if name in nonzero
     )
     return Budget(excerpt, causes, splits, tuple(dict.fromkeys(left_out)))
 
@@ -141,12 +156,29 @@ def _users(
     return evaluations
 
 
-def _split(ideal: Idealized, chain: Sequence[str], evaluation: _Evaluation, name: str) -> Split:
+def _curves(
+    ideal: Idealized,
+    chain: Sequence[str],
+    evaluations: Sequence[_Evaluation],
+    quantities: Sequence[str],
+) -> dict[_Curve, Array]:
+    """The run, and the errors of formulas with their causes, of some quantities."""
+    curves: dict[_Curve, Array] = {(_RUN, name, _TOTAL): ideal.run[name] for name in quantities}
+    for evaluation in evaluations:
+        for name in evaluation.values:
+            if name in quantities:
+                for cause, curve in _causes(ideal, chain, evaluation, name).items():
+                    curves[evaluation.reference, name, cause] = curve
+    return curves
+
+
+def _causes(
+    ideal: Idealized, chain: Sequence[str], evaluation: _Evaluation, name: str
+) -> dict[str, Array]:
     """What each cause of a chain adds, from a formula's values to the run: they add up to formula
-    minus run, to rounding, whatever their order."""
-    reference, values, remaining, errors = evaluation
-    simulated, before, causes = ideal.run[name], values[name], []
-    size = ideal.excerpt.size
+    minus run, the last, to rounding, whatever their order."""
+    _, values, remaining, errors = evaluation
+    simulated, before, causes = ideal.run[name], values[name], {}
     for cause in chain:
         if cause == "series" and not errors:
             continue
@@ -158,15 +190,39 @@ def _split(ideal: Idealized, chain: Sequence[str], evaluation: _Evaluation, name
             after = ideal.exact(lifted)[name]
             if "series" in lifted:
                 after = after + errors["constant speed" in lifted][name]
-        causes.append(Cause(cause, before - after, size(name, before - after)))
+        causes[cause] = before - after
         remaining, before = lifted, after
-    total = values[name] - simulated
+    return {**causes, _TOTAL: values[name] - simulated}
+
+
+def _split(
+    evaluation: _Evaluation,
+    name: str,
+    sampled: tuple[Excerpt, dict[_Curve, Array]],
+    between: tuple[Excerpt, dict[_Curve, Array]],
+) -> Split:
+    """One quantity of a formula; the sizes of curves that are known between the samples are those
+    there, too."""
+    reference, run = evaluation.reference, (_RUN, name, _TOTAL)
+    (excerpt, at_samples), (_, everywhere) = sampled, between
+    points, curves = between if (reference, name, _TOTAL) in everywhere else sampled
+    top = points.top(name, curves[reference, name, _TOTAL])
+    *causes, total = (
+        Cause(
+            name=key[2],
+            curve=curve,
+            size=excerpt.size_with(points, name, curve, curves[key]),
+            at_largest=float(curves[key][top]),
+        )
+        for key, curve in at_samples.items()
+        if key[:2] == (reference, name)
+    )
     return Split(
         quantity=name,
         reference=reference,
-        values=values[name],
-        simulated=simulated,
+        values=evaluation.values[name],
+        simulated=at_samples[run],
         causes=tuple(causes),
-        total=Cause("total", total, size(name, total)),
-        peak=float(np.max(np.abs(simulated))),
+        total=total,
+        peak=peak(everywhere[run]),
     )

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from crankmbs.compare.lectured import Formulas, lectured
 from crankmbs.compare.quantities import OBSERVABLES, observed
-from crankmbs.compare.size import Size, size_of
+from crankmbs.compare.size import TIE, Size, size_of, top_of
 from crankmbs.errors import InputError
 from crankmbs.measures import Span, last_span
 from crankmbs.mechanics.peaks import negligible
@@ -41,9 +41,10 @@ class LeftOut(NamedTuple):
 class Excerpt:
     """The samples of a run's last whole cycle (or revolution, or the run), and one cylinder.
 
-    samples : shape (n,), their indices; those within 0.6 degrees of a rod square to its
+    samples : shape (m,), their indices; those within 0.6 degrees of a rod square to its
         cylinder, where it folds onto the crank and the formulas lose their digits, are left out
-    theta, omega, alpha : shape (n,) [rad, rad/s, rad/s2], of the run
+    variables : of the run by their names in `crankmbs.result.VARIABLES`, shape (n,) or
+        (n, cylinders); where they are, and between them, once points there have been added
     mean_speed [rad/s] : time mean
     cylinder : number of the one that is compared
     others : further variables of the result to compare, by their names in OBSERVABLES
@@ -53,18 +54,29 @@ class Excerpt:
     window: Span
     cylinder: int
     samples: NDArray[np.intp]
-    theta: Array
-    omega: Array
-    alpha: Array
+    variables: Answer
     mean_speed: float
     train: CrankTrain
     others: tuple[str, ...] = ()
 
+    @property
+    def theta(self) -> Array:
+        """Crank angle [rad], shape (n,)."""
+        return self.variables["crank_angle"]
+
+    @property
+    def omega(self) -> Array:
+        """Crank speed [rad/s], shape (n,)."""
+        return self.variables["crank_speed"]
+
+    @property
+    def alpha(self) -> Array:
+        """Crank acceleration [rad/s2], shape (n,)."""
+        return self.variables["crank_acceleration"]
+
     def simulated(self) -> Answer:
         """The run's values, in the lectures' quantities."""
-        data = self.result.data.isel(time=self.samples)
-        variables = {name: data[name].values for name in EVERY if name in data}
-        return self.quantities(variables, self.omega, self.alpha)
+        return self.quantities(self.variables, self.omega, self.alpha)
 
     def newton_euler(self, scene: Scene, *, constant_speed: bool = False) -> Answer:
         """The exact closed form at the run's theta, at its speed or the mean of it; ``scene`` may
@@ -72,7 +84,7 @@ class Excerpt:
         omega, alpha = self._speeds(constant_speed)
         loads = {}
         if scene.force:
-            loads["applied_force"] = self.result.sampled("applied_force")[self.samples]
+            loads["applied_force"] = self.variables["applied_force"]
         train = replace(self.train, scene=scene)
         variables = reactions(train, self.theta, omega, alpha, loads)
         return self.quantities(variables, omega, alpha)
@@ -89,8 +101,19 @@ class Excerpt:
         return self.theta + self.result.scene.cylinders[self.cylinder - 1].phase
 
     def size(self, quantity: str, curve: Array) -> Size:
-        """Maximum and RMS of a curve over these samples."""
+        """Maximum and RMS of a curve over these points."""
         return size_of(curve, self.angles(quantity), self.result.scene.period)
+
+    def size_with(self, points: Excerpt, quantity: str, curve: Array, there: Array) -> Size:
+        """RMS of a curve over the samples, maximum of the same curve over more points, where that
+        is more than rounding above the samples'."""
+        sampled, more = self.size(quantity, curve), points.size(quantity, there)
+        above = more.largest > sampled.largest * (1.0 + TIE)
+        return more._replace(rms=sampled.rms) if above else sampled
+
+    def top(self, quantity: str, curve: Array) -> int:
+        """The index of the point where a curve is largest."""
+        return top_of(curve, self.angles(quantity), self.result.scene.period)
 
     def _speeds(self, constant_speed: bool) -> tuple[Array, Array]:
         """omega and alpha: the run's, or its mean speed and 0."""
@@ -165,10 +188,11 @@ def excerpt_of(result: Result, cylinder: int, others: tuple[str, ...] = ()) -> E
     samples = np.flatnonzero(~folded[window.inside :]) + window.inside
     if len(samples) == 0:
         raise InputError("the rod is folded onto the crank all the time: nothing can be compared")
-    theta, omega, alpha = (
-        result.data[name].values[samples]
-        for name in ("crank_angle", "crank_speed", "crank_acceleration")
-    )
-    mean = window.angle / window.duration if window.duration > 0.0 else float(omega[-1])
+    data = result.variables
+    names = [name for name in EVERY if name in data and name != "energy_residual"]
+    variables = {name: np.asarray(data[name][1][samples]) for name in names}
+    mean = variables["crank_speed"][-1]
+    if window.duration > 0.0:
+        mean = window.angle / window.duration
     train = crank_train(result.scene)
-    return Excerpt(result, window, cylinder, samples, theta, omega, alpha, mean, train, others)
+    return Excerpt(result, window, cylinder, samples, variables, float(mean), train, others)

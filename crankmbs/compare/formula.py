@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,7 @@ __all__ = ["CLOSED_FORM", "Formula", "formulas_of", "formulated", "variables_of"
 
 
 CLOSED_FORM = "closed form"
+_SAME = 1e-12  # of the largest value: rounding
 
 _SHORT = {name.removeprefix("piston "): name for name in OBSERVABLES if name.startswith("piston ")}
 _QUANTITY_NAMES = _SHORT | {name: name for name in (*OBSERVABLES, *NUMBERS)}
@@ -93,6 +94,17 @@ class Formula:
                 "what the formula tends to"
             )
         return values
+
+    def depends_on_angle_alone(self, excerpt: Excerpt) -> bool:
+        """Whether its value at a sample stays what it is without every other sample; that of a
+        running sum or of harmonics does not."""
+        every, second = self.curve(excerpt), slice(None, None, 2)
+        variables = {name: rows[second] for name, rows in excerpt.variables.items()}
+        try:
+            fewer = self.curve(replace(excerpt, variables=variables))
+        except InputError:  # it may count on so many samples
+            return False
+        return bool(np.all(np.abs(fewer - every[second]) <= _SAME * np.max(np.abs(every))))
 
     def number(self, excerpt: Excerpt) -> float:
         """Its one number for a run.

@@ -76,10 +76,8 @@ def _shares(excerpt: Excerpt, pairs: list[Pair], motion: Motion) -> Numbers:
 
 def _answers(excerpt: Excerpt, variables: Answer) -> dict[str, Answer]:
     """The quantities along a motion, by the run and by each lecture."""
-    names = ("crank_angle", "crank_speed", "crank_acceleration")
-    theta, omega, alpha = (variables[name] for name in names)
-    curves = replace(excerpt, theta=theta, omega=omega, alpha=alpha)
-    answers = {_RUN: curves.quantities(variables, omega, alpha)}
+    curves = replace(excerpt, variables=variables)
+    answers = {_RUN: curves.simulated()}
     for name, formulas in LECTURES.items():
         with suppress(InputError):  # of a rod ratio for which its series diverge
             answers[name] = curves.lecture(formulas, constant_speed=True)

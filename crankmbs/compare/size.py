@@ -9,15 +9,14 @@ import numpy as np
 
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["Size", "percent", "size_of", "within"]
+__all__ = ["TIE", "Size", "percent", "size_of", "top_of", "within"]
 
 
-_TIE = 1e-9  # relative: the same peak in two revolutions differs by rounding; the first counts
+TIE = 1e-9  # relative: the same peak in two revolutions differs by rounding; the first counts
 
 
 class Size(NamedTuple):
-    """largest, rms [unit of the curve]; angle [rad], within one period, and index, of the sample
-    with the largest.
+    """largest, rms [unit of the curve]; angle [rad], within one period, of the largest.
 
     The RMS is taken over the crank angle.
     """
@@ -25,16 +24,13 @@ class Size(NamedTuple):
     largest: float
     rms: float
     angle: float
-    sample: int
 
 
 def size_of(curve: Array, angle: Array, period: float) -> Size:
     """Measure a curve over angles, both of shape (n,), [unit] and [rad]."""
     size = np.abs(curve)
     largest = float(np.max(size))
-    angles_within = within(angle, period)
-    ties = np.flatnonzero(size >= largest * (1.0 - _TIE))
-    sample = int(ties[np.argmin(angles_within[ties])])
+    top = top_of(curve, angle, period)
     widths = np.abs(np.diff(angle))
     turned = float(np.sum(widths))
     scaled = (size / largest) ** 2 if largest > 0.0 else size  # no overflow, no underflow
@@ -42,7 +38,14 @@ def size_of(curve: Array, angle: Array, period: float) -> Size:
         mean = float(np.sum(widths * (scaled[1:] + scaled[:-1]))) / (2.0 * turned)
     else:
         mean = float(np.mean(scaled))
-    return Size(largest, largest * math.sqrt(mean), float(angles_within[sample]), sample)
+    return Size(largest, largest * math.sqrt(mean), float(within(angle[top], period)))
+
+
+def top_of(curve: Array, angle: Array, period: float) -> int:
+    """The index of the largest size of a curve, the first in the period of equal ones."""
+    size = np.abs(curve)
+    ties = np.flatnonzero(size >= np.max(size) * (1.0 - TIE))
+    return int(ties[np.argmin(within(angle[ties], period))])
 
 
 def percent(part: float, peak: float) -> float:
@@ -50,7 +53,7 @@ def percent(part: float, peak: float) -> float:
     return 100.0 * part / peak if peak > 0.0 else math.nan
 
 
-def within(angle: Array, period: float) -> Array:
+def within(angle: Array | float, period: float) -> Array:
     """Angles modulo one period; those a rounding below its end become 0."""
     folded = np.mod(angle, period)
-    return np.where(period - folded < _TIE, 0.0, folded)
+    return np.where(period - folded < TIE, 0.0, folded)

@@ -38,9 +38,8 @@ class Words:
 
     def _curve(self, name: str) -> Array:
         """A variable that every cylinder has; zero where the scene has none of the kind."""
-        data = self._excerpt.result.data
         zeros = np.zeros((len(self.theta), len(self.scene.cylinders)))
-        return self.of_cylinder(data[name].values[self._excerpt.samples] if name in data else zeros)
+        return self.of_cylinder(self._excerpt.variables.get(name, zeros))
 
     @property
     def bodies(self) -> Bodies:

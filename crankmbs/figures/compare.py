@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib import rc_context
@@ -65,6 +65,15 @@ _STYLES: dict[str, dict[str, Any]] = {
 _USER = 5  # the first line for formulas of the user: dashed, of a colour that no reference has
 
 
+class _Column(NamedTuple):
+    """Of a quantity the run's peak, the curves above and the errors below, by their labels."""
+
+    quantity: str
+    peak: float
+    curves: dict[str, Array]
+    errors: dict[str, Array]
+
+
 def save_validation(comparison: Comparison, budget: Budget, folder: Path) -> list[Path]:
     """Draw comparison and budget of every family into PNG files, which appear together; what only
     formulas of the user stand for into comparison_formulas.png, their budgets into
@@ -110,7 +119,8 @@ def comparison_figure(comparison: Comparison, quantities: tuple[str, ...]) -> Fi
         rows = [row for row in comparison.rows if row.quantity == name]
         truncated = [row for row in rows if row.reference not in (CLOSED_FORM, _UNTRUNCATED)]
         every += truncated + [row for row in rows if row.reference == CLOSED_FORM]
-        columns.append((name, {"run": comparison.simulated[name]}, _errors(truncated or rows)))
+        run = {"run": comparison.simulated[name]}
+        columns.append(_Column(name, rows[0].peak, run, _errors(truncated or rows)))
     independent = comparison.excerpt.result.formulation == "multibody"
     headline = comparison_headline(every, independent=independent)
     return _figure(comparison.excerpt, columns, headline, "error: formula minus run")
@@ -149,14 +159,15 @@ def budget_figure(
     if not splits:
         return None
     columns = [
-        (
+        _Column(
             split.quantity,
+            split.peak,
             {"run": split.simulated, reference or _BY_YI: split.values},
             {"sum of the causes": split.total.curve, **_seen(split)},
         )
         for split in splits
     ]
-    drawn = {label for _, _, errors in columns for label in errors}
+    drawn = {label for column in columns for label in column.errors}
     unseen = [cause.name for cause in splits[0].causes if cause.name not in drawn]
     about = "error: formula minus run, and its causes"
     if unseen:
@@ -172,24 +183,25 @@ def _seen(split: Split) -> dict[str, Array]:
 
 def _figure(
     excerpt: Excerpt,
-    columns: list[tuple[str, dict[str, Array], dict[str, Array]]],
+    columns: list[_Column],
     headline: tuple[str, str],
     about: str,
 ) -> Figure:
     """A column for each quantity: its curves above, below twice as high its errors in percent of
     the run's peak, one crank-angle axis."""
     n = len(columns)
-    labels = dict.fromkeys(label for _, *pair in columns for lines in pair for label in lines)
+    labels = dict.fromkeys(
+        label for column in columns for label in (*column.curves, *column.errors)
+    )
     users = [label for label in labels if label not in _STYLES]
     styles = _STYLES | {label: line_of(_USER + k) for k, label in enumerate(users)}
     figure, axes = slide(n, headline, [label for label in styles if label in labels])
     view = last_view(excerpt.result)
     degrees = view.degrees[excerpt.samples - excerpt.window.first]
     several = len(excerpt.result.scene.cylinders) > 1
-    of_one = several and any(OBSERVABLES[name].per_cylinder for name, _, _ in columns)
-    for k, (name, curves, errors) in enumerate(columns):
+    of_one = several and any(OBSERVABLES[column.quantity].per_cylinder for column in columns)
+    for k, (name, peak, curves, errors) in enumerate(columns):
         top, bottom = axes[k], axes[n + k]
-        peak = float(np.max(np.abs(curves["run"])))
         for ax, drawn, whole in ((top, curves, None), (bottom, errors, peak)):
             on_axis = {label: view.drawn(degrees, curve) for label, curve in drawn.items()}
             _panel(ax, name, on_axis, styles, whole)

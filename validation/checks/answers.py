@@ -44,7 +44,8 @@ def at_constant_speed(case: Case) -> Outcome:
     before = np.argmin(np.abs(angle - (angle[-1] - theirs.result.scene.period)))
     mean = (angle[-1] - angle[before]) / (time[-1] - time[before])
     still = np.zeros_like(theirs.alpha)
-    steady = replace(theirs, omega=still + mean, alpha=still)
+    motion = {"crank_speed": still + mean, "crank_acceleration": still}
+    steady = replace(theirs, variables={**theirs.variables, **motion})
     closed = steady.newton_euler(theirs.result.scene)
     apart = _apart(answer, closed)
     worst = max(apart, key=lambda name: apart[name])
