@@ -87,13 +87,13 @@ def comparison_frame(comparison: Comparison) -> pd.DataFrame:
         comparison.rows, key=lambda row: list(comparison.simulated).index(row.quantity)
     ):
         units = OBSERVABLES[row.quantity].units
-        scale, (largest, rms, angle, _) = displayed(units)[0], row.size
-        sizes = {"difference": largest, "RMS difference": rms}
+        scale, size = displayed(units)[0], row.size
+        sizes = {"difference": size.largest, "RMS difference": size.rms}
         lines[labelled(row.quantity, None, 1, units), short_name(row.reference)] = {
             "run": row.peak / scale,
-            **{name: size / scale for name, size in sizes.items()},
-            **{f"{name} [%]": percent(size, row.peak) for name, size in sizes.items()},
-            "angle [deg]": math.degrees(angle),
+            **{name: value / scale for name, value in sizes.items()},
+            **{f"{name} [%]": percent(value, row.peak) for name, value in sizes.items()},
+            "angle [deg]": math.degrees(size.angle),
         }
     for number in comparison.numbers:
         scale = displayed(number.units)[0]
