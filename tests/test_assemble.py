@@ -102,7 +102,7 @@ def test_errors_that_a_formulation_states_are_taken():
 
 
 def test_what_a_formulation_computed_itself_is_taken():
-    own = replace(samples(), own={"external_torque": 7.0 + 0.0 * TIME})
+    own = replace(samples(), computed={"external_torque": 7.0 + 0.0 * TIME})
     variables = assemble(CrankTrain(SCENE, None), Solution(own, 0, "done", 1, 1)).variables
     assert np.all(variables["external_torque"] == 7.0)
 

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -91,7 +92,7 @@ def test_the_largest_loads_of_the_whole_run_are_marked(start):
     *_, loads = plot(start, "transient").axes
     peaks = {peak.name: peak for peak in reversed(run_peaks(start))}
     largest = max(p.value.value for p in run_peaks(start) if p.name == "crank pin")
-    dots = [line.get_xydata()[0] for line in loads.lines if line.get_marker() == "o"]
+    dots: list[Any] = [line.get_xydata()[0] for line in loads.lines if line.get_marker() == "o"]
     tops = np.array([peaks["main bearing"].value.value, largest]) / 1e3
     assert [y for _, y in dots] == pytest.approx(tops)
     assert dots[0][0] == peaks["main bearing"].time

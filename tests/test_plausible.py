@@ -86,6 +86,12 @@ SPARED = {
         inertia="two-mass",
     ),
     "a crosshead's bearings": replace(DIESEL, bearings=Bearings(crank_pin=SHELL)),
+    "the flywheel of a hit-and-miss engine": replace(
+        V_TWIN, crank=Crank(radius=0.075, inertia=18.0)
+    ),
+    "a cylinder far beside the crankshaft": repistoned(FOUR, offset=0.023),
+    "an offset mechanism without gas": reroded(repistoned(BARS, offset=0.12), length=0.3),
+    "a press, its flywheel behind a gear": replace(BARS, crank=Crank(radius=0.1, inertia=25e3)),
     "a plunger": repistoned(replace(BARS, crank=Crank(radius=0.15, inertia=1.0)), bore=0.06),
 }
 
@@ -179,6 +185,28 @@ ODD = {
         ),
         "rod.length: a rod as long as crank.radius + |piston.offset|, 110 mm, "
         f"{FOLDED.format(270)}: a run ends there",
+    ),
+    "an offset in cm": (
+        repistoned(FOUR, offset=0.08),
+        "piston.offset: 80 mm is 1.74 times the crank's radius, with which a stroke of 92 mm "
+        "becomes one of 111 mm; engines have up to half the radius; check its unit",
+    ),
+    "an offset in cm to the other side": (
+        repistoned(FOUR, offset=-0.08),
+        "piston.offset: -80 mm is 1.74 times the crank's radius, with which a stroke of 92 mm "
+        "becomes one of 111 mm; engines have up to half the radius; check its unit",
+    ),
+    "a flywheel a thousand times as heavy": (
+        replace(FOUR, crank=Crank(radius=0.046, inertia=150.0)),
+        "crank.inertia: 150 kg m^2 is more than that of a solid steel disc 552 mm in diameter and "
+        "184 mm wide, 13.2 kg m^2; flywheels of engines have a tenth of that and less; check its "
+        "unit",
+    ),
+    "a flywheel for a wide bore": (
+        replace(V_TWIN, crank=Crank(radius=0.036, inertia=35.0)),
+        "crank.inertia: 35 kg m^2 is more than that of a solid steel disc 564 mm in diameter and "
+        "188 mm wide, 14.7 kg m^2; flywheels of engines have a tenth of that and less; check its "
+        "unit",
     ),
     "a shell wide in metres": (
         replace(DIESEL, bearings=Bearings(crank_pin=Shell(diameter=0.056, width=42.0))),

@@ -25,11 +25,12 @@ _STEEL = 7850.0  # kg/m3
 
 
 class _Sized(NamedTuple):
-    """What moves in a cylinder, and its piston's diameter [m], without area three times the stroke,
-    as the slide of a press may be wide."""
+    """What moves in a cylinder; its piston's diameter [m], without area three times the stroke, as
+    the slide of a press may be wide; whether gas presses on it."""
 
     gear: RunningGear
     diameter: float
+    gas: bool
 
 
 def warnings(scene: Scene) -> tuple[str, ...]:
@@ -42,11 +43,16 @@ def warnings(scene: Scene) -> tuple[str, ...]:
     sentences = []
     for number, gear in enumerate(scene.running_gear, start=1):
         area = gear.piston.gas_area
-        sized = _Sized(gear, 3.0 * gear.stroke if area is None else math.sqrt(4.0 * area / math.pi))
+        wide = 3.0 * gear.stroke if area is None else _diameter(area)
+        sized = _Sized(gear, wide, scene.gas is not None)
         prefix = "" if gear == common else f"cylinder[{number}]: "
         sentences += [f"{prefix}{sentence}" for rule in _OF_GEAR for sentence in rule(sized)]
     sentences += [sentence for rule in _OF_SCENE for sentence in rule(scene)]
     return tuple(dict.fromkeys(sentences))
+
+
+def _diameter(area: float) -> float:
+    return math.sqrt(4.0 * area / math.pi)
 
 
 # The longest strokes are those of ships' two-stroke engines, 3.5 m; model engines have 5 mm.
@@ -87,7 +93,7 @@ _DIAMETERS = 5.0
 
 
 def _masses(machine: _Sized) -> Iterator[str]:
-    (_, rod, piston), d = machine
+    (_, rod, piston), d, _ = machine
     column = _STEEL * math.pi / 4.0 * d**2
     for name, mass, height in (
         ("rod", rod.mass, rod.length),
@@ -135,7 +141,7 @@ _THIN = 0.02
 def _light_masses(machine: _Sized) -> Iterator[str]:
     if any(True for rule in (_stroke, _bore, _rod_length) for _ in rule(machine)):
         return  # what is wrong is a length
-    (_, rod, piston), d = machine
+    (_, rod, piston), d, _ = machine
     disc = math.inf if piston.gas_area is None else _ALUMINIUM * piston.gas_area * _THIN * d
     bar = _ALUMINIUM * rod.length * (_THIN * rod.length) ** 2
     if 0.0 < piston.mass < disc < math.inf:
@@ -171,6 +177,44 @@ def _rod(machine: _Sized) -> Iterator[str]:
             f"rod.inertia: {rod.moment_of_inertia:.4g} kg m^2 about the centre of mass is that of "
             f"the whole mass {gyration * 1e3:.4g} mm away from it, and the rod is "
             f"{rod.length * 1e3:.4g} mm long; check its unit"
+        )
+
+
+# Engines are offset by a twentieth of the crank's radius at the pin, by a half at most where their
+# cylinders stand beside the crankshaft; mechanisms without gas, such as quick returns, by any.
+_OFFSET_OVER_RADIUS = 1.0
+
+
+def _offset(machine: _Sized) -> Iterator[str]:
+    radius, _, offset = machine.gear.shape
+    if machine.gas and abs(offset) > _OFFSET_OVER_RADIUS * radius:
+        yield (
+            f"piston.offset: {offset * 1e3:.4g} mm is {abs(offset) / radius:.3g} times the crank's "
+            f"radius, with which a stroke of {2e3 * radius:.4g} mm becomes one of "
+            f"{machine.gear.stroke * 1e3:.4g} mm; engines have up to half the radius; check its "
+            "unit"
+        )
+
+
+# A solid disc of steel six strokes (bores, where they are larger) in diameter and two wide. The
+# flywheels of stationary engines and compressors have a tenth of its inertia and less; presses,
+# which have no gas, have theirs behind a gear.
+_DISC = 6.0, 2.0
+
+
+def _inertia(scene: Scene) -> Iterator[str]:
+    inertia, gears = scene.crank.inertia, scene.running_gear
+    areas = [each.piston.gas_area for each in gears]
+    size = max(*(2.0 * each.radius for each in gears), *(_diameter(each or 0.0) for each in areas))
+    if scene.gas is None or inertia is None or not _STROKES[0] <= size <= _STROKES[1]:
+        return
+    diameter, width = (times * size for times in _DISC)
+    disc = _STEEL * math.pi / 32.0 * diameter**4 * width
+    if inertia > disc:
+        yield (
+            f"crank.inertia: {inertia:.4g} kg m^2 is more than that of a solid steel disc "
+            f"{diameter * 1e3:.4g} mm in diameter and {width * 1e3:.4g} mm wide, {disc:.3g} kg "
+            "m^2; flywheels of engines have a tenth of that and less; check its unit"
         )
 
 
@@ -302,5 +346,5 @@ def _gas_work(scene: Scene) -> float:
 
 
 _Rules = tuple[Callable[..., Iterator[str]], ...]
-_OF_GEAR: _Rules = (_stroke, _bore, _masses, _light_masses, _rod_length, _fold, _rod)
-_OF_SCENE: _Rules = (_shells, _ambient, _peak, _loads)
+_OF_GEAR: _Rules = (_stroke, _bore, _masses, _light_masses, _rod_length, _offset, _fold, _rod)
+_OF_SCENE: _Rules = (_inertia, _shells, _ambient, _peak, _loads)
