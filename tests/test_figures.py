@@ -168,14 +168,26 @@ def test_polar_diagrams_have_equal_axes_with_counter_clockwise_as_in_the_engine(
             assert left > right
 
 
-def test_polar_diagram_marks_every_quarter_turn_on_the_curve(one):
+def test_polar_diagram_marks_the_peak_and_angles_that_lie_apart_on_the_curve(one):
     (ax,) = main_bearing_figure(one).axes
-    found = sorted(int(angle) for text in texts(ax) for angle in text.split(", "))
-    assert found == list(range(0, 720, 90))
-    dots = [line.get_xydata()[0] for line in ax.lines if line.get_marker() == "o"]
     curve = ax.lines[0].get_xydata()
-    for dot in dots:
-        assert np.min(np.hypot(*(curve - dot).T)) == 0.0
+    dots = np.array([line.get_xydata()[0] for line in ax.lines if line.get_marker() == "o"])
+    marked = dict(zip(texts(ax), dots, strict=True))
+    (peak,) = (label for label in marked if label.startswith("peak"))
+    largest = int(np.argmax(np.hypot(*curve.T)))
+    assert float(peak.removeprefix("peak ")) == pytest.approx(
+        one.degrees[largest] % 720.0, abs=0.05
+    )
+    assert np.array_equal(marked.pop(peak), curve[largest])
+    assert {"0", "90"} & set(marked)
+    for label, dot in marked.items():
+        assert int(label) % 30 == 0
+        nearest = np.argmin(np.abs((one.degrees - int(label) + 1.0) % 720.0 - 1.0))
+        assert np.hypot(*(curve[nearest] - dot)) == pytest.approx(0.0, abs=1e-6)
+    size = np.ptp(curve, axis=0).max()
+    between = np.hypot(*(dots[:, None] - dots[None]).T)
+    assert np.min(between[~np.eye(len(dots), dtype=bool)]) > 0.08 * size
+    assert len(dots) >= 6
 
 
 def test_labels_of_a_polar_diagram_do_not_overlap(one):
@@ -190,23 +202,22 @@ def test_labels_of_a_polar_diagram_do_not_overlap(one):
 
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
-def test_many_marks_on_one_spot_leave_the_curve_its_size(sense):
-    """A press: its force is there for some degrees in a turn, so most marks lie on the origin."""
+def test_a_force_of_some_degrees_is_marked_there_and_not_on_the_origin(sense):
+    """A press: its force is there for some degrees in a turn, so most angles lie on the origin."""
     degrees = np.arange(0.0, 721.0)
-    force = 60e3 * np.exp(-(((degrees % 360.0 - 180.0) / 12.0) ** 2))
+    force = 60e3 * np.exp(-(((degrees % 360.0 - 180.0) / 40.0) ** 2))
     figure, (ax,) = panels(1, 1, 8.0, 8.0)
     draw_polar(ax, (1.0 + 0.5j * sense) * force[:, None], degrees, {0: ""}, ("up", "left"))
     figure.draw_without_rendering()
     low, high = ax.get_ylim()
     assert high - low < 120.0  # kN
-    two, many = sorted(ax.texts, key=lambda text: len(text.get_text()))
-    assert two.get_text() == " 180, 540 "
-    assert many.get_text().split() == ["0,", "90,", "270,", "360,", "450,", "630"]
-    assert not two.get_window_extent().overlaps(many.get_window_extent())
-    area, box = ax.get_window_extent(), many.get_window_extent()
-    assert area.x0 <= box.x0
-    assert box.x1 <= area.x1
-    assert area.y0 <= box.y0
+    assert {text.get_text().strip() for text in ax.texts} == {"peak 180", "0", "120", "150"}
+    area = ax.get_window_extent()
+    boxes = [text.get_window_extent() for text in ax.texts]
+    for k, box in enumerate(boxes):
+        assert area.x0 <= box.x0 < box.x1 <= area.x1
+        assert area.y0 <= box.y0
+        assert not any(box.overlaps(other) for other in boxes[k + 1 :])
 
 
 def test_crank_pin_turning_with_the_crank_is_the_fixed_one_turned(one):

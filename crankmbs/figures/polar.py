@@ -8,7 +8,7 @@ piston; the load on the earlier body is its opposite.
 from __future__ import annotations
 
 import math
-import textwrap
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +20,6 @@ from crankmbs.figures.style import (
     STYLE,
     footer,
     force_scale,
-    grouped,
     legend,
     line_of,
     mark_points,
@@ -45,14 +44,14 @@ __all__ = [
 _CYLINDER = ("X, from crank to head", "Y, 90 deg ahead of X")
 ENGINE = ("engine's X", "engine's Y, 90 deg ahead of X")
 THROW = ("radial, outwards along the throw", "tangential, in the sense of +theta")
-_CLOSE = 0.02  # of the curve's size: marks nearer than this share one label
-_WIDEST = 9  # letters in a line of a label: two angles
+_STEP = 30  # deg, of what is marked
+_APART = 0.08  # of the curve's size: so far marks lie from one another
 _GAP, _LINE, _LETTER = 0.04, 0.045, 0.017  # of the axes: to the labels; their height and width
 
 
 class _Mark(NamedTuple):
     at: complex
-    lines: list[str]
+    label: str
 
 
 @rc_context(STYLE)
@@ -125,7 +124,7 @@ def _caption(figure: Figure, view: View, joint: str, angle: str) -> None:
 def draw_polar(
     ax: Axes, force: Plane, degrees: Array, labels: dict[int, str], sense: tuple[str, str]
 ) -> None:
-    """Draw curves with a label and mark the first one at every 90 degrees.
+    """Draw curves with a label, and mark the largest force of all and angles along the first.
 
     force : shape (n, curves); degrees : of the first; sense : what is upwards, to the left
     """
@@ -139,24 +138,28 @@ def draw_polar(
     ax.axvline(0.0, color="0.55", linewidth=1.0, zorder=1)
     ax.set_ylabel(f"{sense[0]} [{unit}]")
     ax.set_xlabel(f"{sense[1]} [{unit}]")
-    _frame(ax, curves, _marks(curves[:, 0], degrees))
+    _frame(ax, curves, _marks(curves, labels, degrees))
 
 
-def _marks(curve: Plane, degrees: Array) -> list[_Mark]:
-    """The samples nearest to every 90 degrees, those on one spot together."""
-    near = _CLOSE * max(float(np.ptp(curve.real)), float(np.ptp(curve.imag)))
+def _marks(curves: Plane, drawn: Iterable[int], degrees: Array) -> list[_Mark]:
+    """The largest force of all curves drawn; then, on the first, the samples nearest to every 90
+    degrees and to every 30 between them, those that lie apart from all before.
+
+    degrees : shape (n,), of the first; labels are within two turns
+    """
+    curve, size = curves[:, 0], np.abs(curves)
+    apart = _APART * max(float(np.ptp(curve.real)), float(np.ptp(curve.imag)))
+    of = max(drawn, key=lambda k: float(size[:, k].max()))
+    peak = int(size[:, of].argmax())
+    at = round(float(degrees[peak]), 1) % 720.0
+    marks = [_Mark(complex(curves[peak, of]), f"peak {at:g}")]
     low, high = float(degrees.min()), float(degrees.max())
-    first = math.ceil(low / 90.0 - 1e-6) * 90
-    angles = range(first, min(math.floor(high + 1e-6), first + 719) + 1, 90)
-    nearest = {angle % 720: int(np.argmin(np.abs(degrees - angle))) for angle in angles}
-
-    def on_one_spot(one: int, other: int) -> bool:
-        return bool(abs(curve[nearest[one]] - curve[nearest[other]]) <= near)
-
-    marks = []
-    for spot in grouped(nearest, on_one_spot):
-        lines = textwrap.wrap(", ".join(map(str, sorted(spot))), _WIDEST)
-        marks.append(_Mark(complex(curve[nearest[spot[0]]]), lines))
+    first = math.ceil(low / _STEP - 1e-6) * _STEP
+    angles = range(first, min(math.floor(high + 1e-6), first + 719) + 1, _STEP)
+    for angle in sorted(angles, key=lambda angle: (angle % 90 != 0, angle)):
+        spot = complex(curve[np.argmin(np.abs(degrees - angle))])
+        if all(abs(spot - mark.at) > apart for mark in marks):
+            marks.append(_Mark(spot, str(angle % 720)))
     return marks
 
 
@@ -169,7 +172,7 @@ def _frame(ax: Axes, curves: Plane, marks: list[_Mark]) -> None:
         (min(float(part.min()), 0.0), max(float(part.max()), 0.0))
         for part in (curves.imag, curves.real)
     )
-    letters = max((len(line) for mark in marks for line in mark.lines), default=0)
+    letters = max((len(mark.label) for mark in marks), default=0)
     share = 1.0 - 2.0 * (_GAP + _LETTER * letters)
     span = max((high - low) / share, 1.1 * (top - bottom)) or 1.0
     middle = np.array([0.5 * (low + high), 0.5 * (bottom + top)])
@@ -187,9 +190,9 @@ def _label(ax: Axes, marks: list[_Mark], at: float, side: float, span: float) ->
     """Write the labels of one side below one another, each joined to its mark by a thin line."""
     ordered = sorted(marks, key=lambda mark: -mark.at.real)
     low, free = ax.get_ylim()
-    heights = [_LINE * span * len(mark.lines) for mark in ordered]
+    half = 0.5 * _LINE * span
     for k, mark in enumerate(ordered):
-        half, below = 0.5 * heights[k], sum(heights[k + 1 :])
+        below = 2.0 * half * (len(ordered) - 1 - k)
         height = max(min(mark.at.real, free - half), low + below + half)
         free = height - half
         ax.plot([mark.at.imag, at], [mark.at.real, height], color="0.4", linewidth=0.7, zorder=3)
@@ -197,7 +200,7 @@ def _label(ax: Axes, marks: list[_Mark], at: float, side: float, span: float) ->
         ax.text(
             at,
             height,
-            "\n".join(f" {line} " for line in mark.lines),
+            f" {mark.label} ",
             ha="right" if side > 0.0 else "left",
             va="center",
             fontsize=12,
