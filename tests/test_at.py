@@ -17,6 +17,7 @@ from crankmbs import (
     simulate,
 )
 from crankmbs.errors import InputError
+from crankmbs.report.readings import reading_remarks
 
 DIESEL = load_scene("yi_diesel")
 
@@ -53,6 +54,25 @@ def test_an_angle_between_the_samples_is_exact():
     speed = by_name(found)["crank_speed"]
     assert speed.value == pytest.approx(300.0 + 30.0 * math.cos(2.0 * theta + 0.4), rel=1e-13)
     assert speed.units == "rad/s"
+
+
+def test_the_lectures_forces_go_together_as_is_said():
+    """Of a crank that speeds up, with a rigid rod, and with one of two masses without weight."""
+    free = load_scene("yi_diesel_free").with_(run__until="1 cycle", gravity=None)
+    for scene in free, free.with_(rod=replace(free.rod, inertia="two-mass")):
+        state = simulate(scene).at("375 deg")
+        found = {name: each.value for name, each in by_name(state, 1).items()}
+        alpha = by_name(state)["crank_acceleration"].value
+        rod, r = scene.rod, scene.crank.radius
+        mass = rod.mass * (1.0 - rod.center_of_mass / rod.length)
+        assert abs(alpha) > 100.0
+        torque = found["tangential force"] * r - mass * r**2 * alpha
+        assert found["torque"] == pytest.approx(torque, rel=1e-11)
+        (line,) = (each for each in reading_remarks(state) if "M_k = F_T r - m r^2 alpha" in each)
+        assert f"m = {mass:.6g} kg" in line
+    across = found["tangential force"], found["radial force"]
+    along = found["net force"] / math.cos(found["rod_angle"])
+    assert [abs(found["rod force"]), abs(along)] == pytest.approx([math.hypot(*across)] * 2)
 
 
 @pytest.mark.parametrize("angle", ["0 deg", "720 deg", -4.0 * math.pi, 1e-11])

@@ -10,7 +10,7 @@ from scipy.interpolate import CubicSpline
 from crankmbs import Motion, Oscillation, Ramp, Run, load_scene, simulate
 from crankmbs.errors import InputError
 from crankmbs.measures import Estimate, last_span, measure, orders
-from crankmbs.measures.names import values_of
+from crankmbs.measures.names import names_of, values_of
 from crankmbs.scene.parts import Friction
 
 RPM = math.pi / 30.0
@@ -138,6 +138,8 @@ def test_indicated_power_and_imep_are_the_area_of_the_indicator_diagram(constant
     found, work = measure(constant), indicated_work()
     displaced = DIESEL.piston.area * 2.0 * DIESEL.crank.radius
     assert found.imep[0].value == pytest.approx(work / displaced, rel=1e-5)
+    assert found.indicated_work.value == pytest.approx(work, rel=1e-5)
+    assert names_of(found.scene)["indicated_work"].words == "indicated work per cycle"
     assert found.indicated_power.value == pytest.approx(work * SPEED / (4 * math.pi), rel=1e-5)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ from crankmbs.cli.text import table
 from crankmbs.compare import AtAngle
 from crankmbs.digits import digits, error_digits
 from crankmbs.measures import EngineOrder, EngineOrders
-from crankmbs.report.readings import passed_at, reading_tables
+from crankmbs.report.readings import passed_at, reading_remarks, reading_tables
 from crankmbs.scene.units import RPM
 
 __all__ = ["orders_report", "reading_report", "save_orders"]
@@ -61,7 +62,8 @@ def save_orders(orders: EngineOrders, folder: Path) -> Path:
 def reading_report(state: AtAngle) -> str:
     """Every quantity at one crank angle."""
     tables = [f"\n{table(*each)}" for each in reading_tables(state)]
-    return "\n".join([*tables, passed_at(state)])
+    remarks = [textwrap.fill(remark, 100) for remark in reading_remarks(state)]
+    return "\n".join([*tables, passed_at(state), *remarks])
 
 
 def _lines(row: EngineOrder) -> list[list[str]]:

@@ -140,8 +140,8 @@ def confirm(result: Result) -> Confirmation:
     """Hold a run against the rigid multibody model, integrated in time by exudyn.
 
     The last period, as far as the crank moves in it, is integrated from the motion's state at its
-    begin; and at 60 samples all over the run accelerations and joint forces are solved for. That
-    nothing builds up over a whole run is for the formulation "minimal" to confirm.
+    begin; and at 60 samples all over the run accelerations and joint forces are solved for.
+    Errors that build up over a whole run are for the formulation "minimal" to show.
 
     Raises
     ------

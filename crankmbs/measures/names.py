@@ -32,6 +32,7 @@ def names_of(scene: Scene) -> dict[str, Named]:
     Named(units='N', words='largest crank pin force', of='cylinder')
     """
     gas, rubs, double = scene.gas is not None, scene.friction is not None, scene.double_acting
+    every = ", all cylinders" if len(scene.cylinders) > 1 else ""
     imep, works = "indicated mean effective pressure", gas or rubs or scene.force
     single = {
         "mean_speed": Named("rad/s", "mean speed"),
@@ -50,6 +51,7 @@ def names_of(scene: Scene) -> dict[str, Named]:
         "mechanical_efficiency": Named("1", "mechanical efficiency") if gas and rubs else None,
         "imep": Named("Pa", f"{imep}{', head end' if double else ''}", "cylinder") if gas else None,
         "imep_crank_end": Named("Pa", f"{imep}, crank end", "cylinder") if double else None,
+        "indicated_work": Named("J", f"indicated work per cycle{every}") if gas else None,
     }
     names = {name: about for name, about in single.items() if about is not None}
     joints = joints_of(scene)

@@ -54,6 +54,8 @@ class Measures:
     imep [Pa] : work of the gas in a cycle, the mean of several, over the displaced volume, per
         cylinder; of double-acting ones that of the head end; None without gas or without a whole
         cycle
+    indicated_work [J] : work of the gas on all pistons in a cycle, the mean of several; None
+        without gas or without a whole cycle
     imep_crank_end [Pa] : the same of the crank end, over its volume, stroke times the piston's
         area less the rod's; None where cylinders are single-acting
     indicated_power_head_end, indicated_power_crank_end [W] : the parts of the indicated power; None
@@ -82,6 +84,7 @@ class Measures:
     indicated_power: Estimate | None = None
     imep: tuple[Estimate, ...] | None = None
     imep_crank_end: tuple[Estimate, ...] | None = None
+    indicated_work: Estimate | None = None
     indicated_power_head_end: Estimate | None = None
     indicated_power_crank_end: Estimate | None = None
     friction_power: Estimate | None = None
@@ -306,6 +309,7 @@ def powers(scene: Scene, works: Works, cycles: float, duration: float | Array) -
             numbers["indicated_power_head_end"] = head.summed.over(duration)
             numbers["indicated_power_crank_end"] = crank.summed.over(duration)
         if cycles:
+            numbers["indicated_work"] = of_gas.summed.over(cycles)
             strokes = cycles * np.array([gear.stroke for gear in scene.running_gear])
             on_head, on_crank = areas(scene)
             numbers["imep"] = head.over(on_head * strokes)

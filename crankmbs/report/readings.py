@@ -7,7 +7,10 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from crankmbs.compare import OBSERVABLES, AtAngle, Comparison, Reading, percent, short_name
+from crankmbs.compare.bodies import bodies_of
 from crankmbs.digits import digits, error_digits
 from crankmbs.display import displayed
 from crankmbs.measures import Estimate, Measures
@@ -17,7 +20,14 @@ from crankmbs.report.rows import Table, labelled
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["comparison_frame", "measures_frame", "passed_at", "reading_tables", "readings_frame"]
+__all__ = [
+    "comparison_frame",
+    "measures_frame",
+    "passed_at",
+    "reading_remarks",
+    "reading_tables",
+    "readings_frame",
+]
 
 Row = tuple[str, str, Estimate, Mapping[str, str | float]]
 """A label, SI units, the number with its error, and further columns."""
@@ -45,6 +55,24 @@ def passed_at(state: AtAngle) -> str:
     degrees = round(math.degrees(state.crank_angle), 9)
     time = digits(state.time, most=10)
     return f"passed at {time} s, at a crank angle of {degrees:.9g} deg"
+
+
+def reading_remarks(state: AtAngle) -> list[str]:
+    """Which body each force acts on and in which frame, and how the lectures' forces go together.
+
+    >>> len(reading_remarks(simulate(load_scene("yi_diesel")).at("60 deg")))
+    3
+    """
+    mass = ", ".join(f"{mass:.6g}" for mass in np.unique(bodies_of(state.scene).masses.crank_pin))
+    return [
+        "main bearing and journals: bearing on crank, in the engine's frame X, Y; the main bearing "
+        "is the sum of all journals",
+        "crank pin: crank on rod; piston pin: rod on piston; side force: wall on piston; in the "
+        "cylinder's frame, X along its axis away from the crank",
+        f"F_v, F_oj, F_T and F_R leave out the inertia of the rod's mass at the crank pin, m = "
+        f"{mass} kg, which M_k has: M_k = F_T r - m r^2 alpha; F_oj is the force along the rod, "
+        "equal to F_v / cos(beta) and sqrt(F_T^2 + F_R^2) for a rod of two masses without weight",
+    ]
 
 
 def readings_frame(state: AtAngle) -> pd.DataFrame:

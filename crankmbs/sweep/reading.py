@@ -26,7 +26,7 @@ _DEVIATION = "lecture_deviation"
 _LECTURES = {
     key.partition(" ")[0].lower(): name for name in LECTURES for key in (name, short_name(name))
 }  # "untruncated", "yi", and by key of the bibliography "s1"
-_DIMENSIONS = {"N": "force", "N m": "torque", "Pa": "pressure", "N/m^2": "pressure"}
+_DIMENSIONS = {"N": "force", "N m": "torque", "Pa": "pressure", "N/m^2": "pressure", "J": "torque"}
 _DIMENSIONS |= {"rad": "angle", "rad/s": "angular speed", "m/s": "speed", "W": "power"}
 _SHARE = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(%?)\s*")
 _OF_SPEED = ("fluctuation", "mean_speed", "highest_speed", "lowest_speed")
