@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -9,10 +10,11 @@ from typing import Any
 from crankmbs.compare.between import with_points_between
 from crankmbs.compare.excerpt import Answer, Excerpt, LeftOut, excerpt_of, vanishing
 from crankmbs.compare.formula import CLOSED_FORM, Formula, formulas_of, variables_of
-from crankmbs.compare.lectured import LECTURES
+from crankmbs.compare.lectured import LECTURES, reference_named
 from crankmbs.compare.numbers import NUMBERS, Number
 from crankmbs.compare.quantities import QUANTITIES
-from crankmbs.compare.size import Size
+from crankmbs.compare.size import Size, percent
+from crankmbs.digits import digits
 from crankmbs.errors import InputError
 from crankmbs.mechanics.peaks import peak
 from crankmbs.numerics.arrays import Array
@@ -40,6 +42,13 @@ class Deviation:
     error: Array
     size: Size
     peak: float
+
+    def __repr__(self) -> str:
+        return (
+            f"<Deviation of the {self.quantity} by {self.reference}: "
+            f"{digits(percent(self.size.largest, self.peak), most=3)} % of the peak at most, at "
+            f"{math.degrees(self.size.angle):.0f} deg, {len(self.values)} samples>"
+        )
 
 
 @dataclass(frozen=True)
@@ -74,14 +83,16 @@ class Comparison:
         return comparison_html(self)
 
     def row(self, quantity: str, reference: str = CLOSED_FORM) -> Deviation:
-        """The deviation of one quantity from one reference.
+        """The deviation of one quantity from one reference, which may be called as tables and
+        figures do: "Grega", or "S0".
 
         Raises
         ------
         InputError : there is none
         """
+        label = reference_named(reference, self.references)
         for row in self.rows:
-            if (row.quantity, row.reference) == (quantity, reference):
+            if (row.quantity, row.reference) == (quantity, label):
                 return row
         raise InputError(
             f"no {quantity!r} against {reference!r} here; quantities: "

@@ -6,7 +6,7 @@ masses on a massless bar, the crank is a mass at its radius, and there is no gra
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +29,7 @@ __all__ = [
     "RodForces",
     "lectured",
     "quantities_by",
+    "reference_named",
     "short_name",
 ]
 
@@ -124,6 +125,22 @@ def short_name(reference: str) -> str:
     ('Grega', 'closed form')
     """
     return _AUTHORS.get(reference, reference)
+
+
+def reference_named(text: str, references: Iterable[str]) -> str | None:
+    """The reference of a name: its label, its key, what a heading or a figure calls it; None where
+    none of them has it.
+
+    >>> reference_named("Grega", LECTURES), reference_named("S1", LECTURES)
+    ('S0 (motion truncated)', 'S1 (motion and forces truncated)')
+    """
+    for reference in references:
+        names = {reference, short_name(reference)}
+        if reference in _AUTHORS:
+            names.add(reference.partition(" ")[0])
+        if text in names:
+            return reference
+    return None
 
 
 def lectured(

@@ -9,7 +9,7 @@ import numpy as np
 
 from crankmbs.compare.chain import CAUSES, REST
 from crankmbs.compare.excerpt import Excerpt, LeftOut
-from crankmbs.compare.lectured import LECTURES
+from crankmbs.compare.lectured import LECTURES, reference_named
 from crankmbs.compare.size import Size, percent
 from crankmbs.digits import digits
 from crankmbs.errors import InputError
@@ -31,6 +31,9 @@ class Cause:
     size: Size
     at_largest: float
 
+    def __repr__(self) -> str:
+        return f"<Cause {self.name!r}: {digits(self.size.largest)} at most, {_where(self)}>"
+
 
 @dataclass(frozen=True)
 class Split:
@@ -50,6 +53,9 @@ class Split:
     causes: tuple[Cause, ...]
     total: Cause
     peak: float
+
+    def __repr__(self) -> str:
+        return f"<Split of the {self.sentence()}>"
 
     def cause(self, name: str) -> Cause:
         """One of the causes.
@@ -150,22 +156,24 @@ class Budget:
         return budget_html(self)
 
     def split(self, quantity: str, reference: str | None = None) -> Split:
-        """The split of one quantity by the lectures' formulas, or by that of a label.
+        """The split of one quantity by the lectures' formulas, or by that of a label, which may be
+        called as tables and figures do.
 
         Raises
         ------
         InputError : there is none
         """
+        every = dict.fromkeys(split.reference for split in self.splits)
+        label = None if reference is None else reference_named(reference, every)
         for split in self.splits:
-            fits = split.is_lecture if reference is None else split.reference == reference
+            fits = split.is_lecture if reference is None else split.reference == label
             if split.quantity == quantity and fits:
                 return split
         by = "" if reference is None else f" by {reference!r}"
         quantities = dict.fromkeys(split.quantity for split in self.splits)
-        references = dict.fromkeys(split.reference for split in self.splits)
         raise InputError(
             f"no {quantity!r}{by} here; quantities: {', '.join(quantities)}; formulas: "
-            f"{', '.join(references)}"
+            f"{', '.join(every)}"
         )
 
 
