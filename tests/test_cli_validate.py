@@ -260,12 +260,9 @@ def test_the_curves_of_a_budget_figure_add_up_to_the_thick_one(four):
     assert legend == ["run", "formula of Yi et al.", "sum of the causes", *drawn]
     assert "too small: datum, gravity, solver" in figure.get_supxlabel()
     above = {label: line.get_ydata() for label, line in curves(top).items()}
-    scale = np.max(np.abs(above["run"])) / np.max(np.abs(split.split("torque").simulated))
-    share = (
-        100.0
-        * (above["formula of Yi et al."] - above["run"])
-        / (scale * split.split("torque").peak)
-    )
+    torque = split.split("torque")
+    scale = torque.peak * np.max(np.abs(above["run"])) / np.max(np.abs(torque.simulated))
+    share = 100.0 * (above["formula of Yi et al."] - above["run"]) / scale
     assert np.allclose(share, total, rtol=0.0, atol=1e-11)
     degrees = curves(bottom)["series"].get_xdata()
     assert (degrees[0], degrees[-1]) == pytest.approx((0.0, 720.0))

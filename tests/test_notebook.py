@@ -109,6 +109,30 @@ def test_what_is_printed_of_them_is_a_line(short):
     assert all("\n" not in text and len(text) < 400 for text in texts)
 
 
+@pytest.mark.parametrize("name", ["Grega", "S0", "S0 (motion truncated)"])
+def test_a_reference_is_found_by_what_it_is_called_anywhere(short, name):
+    comparison, split = crankmbs.compare(short), crankmbs.budget(short)
+    assert comparison.row("side thrust", name).reference == "S0 (motion truncated)"
+    s1 = {"Grega": "Yi et al.", "S0": "S1"}.get(name, "S1 (motion and forces truncated)")
+    assert split.split("side thrust", s1) == split.split("side thrust")
+
+
+def test_rows_of_a_comparison_and_of_a_budget_are_lines_too(short):
+    comparison, split = crankmbs.compare(short), crankmbs.budget(short).split("side thrust")
+    texts = repr(comparison.rows[0]), repr(split), repr(split.total), repr(split.causes)
+    assert all("array" not in text for text in texts)
+    assert all(len(text) < 400 for text in texts[:3])
+    assert "side thrust by S0" in repr(comparison.row("side thrust", "S0"))
+
+
+def test_tables_say_of_what_their_angles_are_and_name_formulas_alike(short):
+    for table in (crankmbs.compare(short), crankmbs.budget(short)):
+        text = shown(table, pictures=0)
+        assert "cycle angle of the cylinder, of the main bearing the crank angle" in text
+        assert "Yi et al." in text
+        assert "S1 (" not in text
+
+
 def test_a_result_shows_its_measures_with_errors_and_a_figure(short):
     text, speed = shown(short), short.measures().mean_speed
     assert "reached the end of the run" in text

@@ -7,10 +7,11 @@ import textwrap
 from collections.abc import Sequence
 
 from crankmbs.cli.text import table
-from crankmbs.compare import CLOSED_FORM, LECTURES, OBSERVABLES, Budget, Comparison, Split, percent
+from crankmbs.compare import CLOSED_FORM, LECTURES, Budget, Comparison, Split, percent
 from crankmbs.digits import digits, error_digits
 from crankmbs.report.compared import (
     advice,
+    angle_words,
     budget_table,
     comparison_table,
     exact_words,
@@ -128,14 +129,9 @@ def _lectures(comparison: Comparison, split: Budget) -> str:
         "error: formula minus run, in % of the run's peak, at its largest; the causes add up to it",
         "formulas: those of Yi, Win and Htay (S1)"
         + ("; last column: the largest error of Grega's (S0)" if beside else ""),
-        "angles: cycle angle of the cylinder"
-        + (", of the main bearing the crank angle" if _of_engine(rows) else ""),
+        f"angles: {angle_words(row.quantity for row in rows)}",
     ]
     return "\n".join([*lines, "", *_rows(rows, beside)])
-
-
-def _of_engine(splits: Sequence[Split]) -> bool:
-    return any(not OBSERVABLES[split.quantity].per_cylinder for split in splits)
 
 
 def _rows(splits: Sequence[Split], beside: Comparison | None = None) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -12,7 +13,8 @@ from crankmbs.compare.formula import CLOSED_FORM, Formula, formulas_of, variable
 from crankmbs.compare.lectured import LECTURES, row_of
 from crankmbs.compare.numbers import NUMBERS, Number
 from crankmbs.compare.quantities import QUANTITIES
-from crankmbs.compare.size import Size
+from crankmbs.compare.size import Size, percent
+from crankmbs.digits import digits
 from crankmbs.errors import InputError
 from crankmbs.mechanics.peaks import peak
 from crankmbs.numerics.arrays import Array
@@ -43,6 +45,13 @@ class Deviation:
     error: Array
     size: Size
     peak: float
+
+    def __repr__(self) -> str:
+        return (
+            f"<Deviation of the {self.quantity} by {self.reference}: "
+            f"{digits(percent(self.size.largest, self.peak), most=3)} % of the peak at most, at "
+            f"{math.degrees(self.size.angle):.0f} deg, {len(self.values)} samples>"
+        )
 
 
 @dataclass(frozen=True)
@@ -91,7 +100,7 @@ class Comparison:
         return comparison_html(self)
 
     def row(self, quantity: str, reference: str = CLOSED_FORM) -> Deviation:
-        """The deviation of one quantity from one reference, as tables or files call it.
+        """The deviation of one quantity from one reference, as tables, figures or files call it.
 
         Raises
         ------

@@ -142,6 +142,12 @@ def short_name(reference: str) -> str:
     return _AUTHORS.get(reference, reference)
 
 
+def _names_of(reference: str) -> set[str]:
+    """The label of a reference, what headings and figures call it, and of a lecture its key, S0."""
+    key = {reference.partition(" ")[0]} if reference in _AUTHORS else set[str]()
+    return {reference, short_name(reference)} | key
+
+
 def row_of(rows: Sequence[_RowT], quantity: str, reference: str | None) -> _RowT:
     """That of a quantity, with its unit or without, by a reference, as tables or files call it, or
     None, by the lectures.
@@ -156,7 +162,7 @@ def row_of(rows: Sequence[_RowT], quantity: str, reference: str | None) -> _RowT
         known = there_are(name, list(dict.fromkeys(row.quantity for row in rows)))
         raise InputError(f"no {shown(quantity)} here{known}")
     for row in alike:
-        if reference in (row.reference, short_name(row.reference)):
+        if reference in _names_of(row.reference):
             return row
         if reference is None and row.reference in LECTURES:
             return row

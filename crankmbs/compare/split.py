@@ -32,6 +32,9 @@ class Cause:
     size: Size
     at_largest: float
 
+    def __repr__(self) -> str:
+        return f"<Cause {self.name!r}: {digits(self.size.largest)} at most, {_where(self)}>"
+
 
 @dataclass(frozen=True)
 class Split:
@@ -51,6 +54,9 @@ class Split:
     causes: tuple[Cause, ...]
     total: Cause
     peak: float
+
+    def __repr__(self) -> str:
+        return f"<Split of the {self.sentence()}>"
 
     def cause(self, name: str) -> Cause:
         """One of the causes, as tables or files call it.
@@ -154,7 +160,8 @@ class Budget:
         return budget_html(self)
 
     def split(self, quantity: str, reference: str | None = None) -> Split:
-        """The split of one quantity by the lectures' formulas, or by that of a label.
+        """The split of one quantity by the lectures' formulas, or by that of a label, which may be
+        called as tables and figures do.
 
         Raises
         ------

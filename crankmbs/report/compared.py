@@ -6,7 +6,7 @@ Errors are formula minus run, in percent of the largest value in the run.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from crankmbs.compare import (
     LECTURES,
@@ -27,6 +27,7 @@ from crankmbs.result import Result
 
 __all__ = [
     "advice",
+    "angle_words",
     "budget_table",
     "comparison_table",
     "exact_words",
@@ -75,6 +76,18 @@ def budget_table(splits: Sequence[Split], comparison: Comparison | None = None) 
     headings = ["quantity", "peak", "error [%]", "at [deg]"]
     headings += [splits[0].heading(name) for name in causes]
     return Table([*headings, *([] if comparison is None else [f"{short_name(_S0)} [%]"])], rows)
+
+
+def angle_words(quantities: Iterable[str]) -> str:
+    """What the angles are at which these quantities err most.
+
+    >>> angle_words(["side thrust"])
+    'cycle angle of the cylinder'
+    """
+    engine = any(not OBSERVABLES[name].per_cylinder for name in quantities)
+    return "cycle angle of the cylinder" + (
+        ", of the main bearing the crank angle" if engine else ""
+    )
 
 
 def exact_words(splits: Sequence[Split]) -> str:

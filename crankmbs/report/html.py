@@ -9,13 +9,14 @@ from collections.abc import Sequence
 from markupsafe import Markup
 
 from crankmbs.choose import choose
-from crankmbs.compare import AtAngle, Budget, Comparison, Excerpt
+from crankmbs.compare import AtAngle, Budget, Comparison, Excerpt, short_name
 from crankmbs.errors import CrankmbsError
 from crankmbs.figures import last_view, machine_figure, png, speed_figure
 from crankmbs.measures import Measures, measure
 from crankmbs.measures.plausible import warnings
 from crankmbs.report.compared import (
     advice,
+    angle_words,
     budget_table,
     comparison_table,
     left_out_lines,
@@ -111,7 +112,10 @@ def comparison_html(comparison: Comparison) -> str:
     >>> comparison_html(compare(simulate(load_scene("propeller")))).count("<table>")
     1
     """
-    text = "largest difference from the run, in % of its peak; the angle is the last reference's"
+    text = (
+        "largest difference from the run, in % of its peak; at: where that of the last reference "
+        f"is, {angle_words(comparison.simulated)}"
+    )
     lines = [Markup("<p>{}</p>").format(line) for line in left_out_lines(comparison.left_out)]
     numbers = [_table(*number_table(comparison))] if comparison.numbers else []
     parts = [_table(*comparison_table(comparison)), *numbers, *lines]
@@ -124,11 +128,14 @@ def budget_html(budget: Budget) -> str:
     >>> budget_html(budget(simulate(load_scene("propeller")))).count("<table>")
     1
     """
-    text = "formula minus run, in % of its peak, where it is largest; the causes add up to it there"
+    text = (
+        "formula minus run, in % of its peak, where it is largest; the causes add up to it there; "
+        f"at: {angle_words(split.quantity for split in budget.splits)}"
+    )
     parts: list[Markup] = []
     for reference in dict.fromkeys(split.reference for split in budget.ranked):
         splits = [split for split in budget.ranked if split.reference == reference]
-        parts += [Markup("<p>{}</p>").format(reference), _table(*budget_table(splits))]
+        parts += [Markup("<p>{}</p>").format(short_name(reference)), _table(*budget_table(splits))]
     lines = [*([advice(budget)] if budget.splits else []), *left_out_lines(budget.left_out)]
     parts += [Markup("<p>{}</p>").format(line) for line in lines]
     return _whole(budget.excerpt.result.scene, f"{_stretch(budget.excerpt)}: {text}", parts)
