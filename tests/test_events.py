@@ -127,8 +127,8 @@ def test_the_command_says_where_the_rest_of_the_events_is(tmp_path, monkeypatch)
     monkeypatch.chdir(tmp_path)
     said = crankmbs_("run", "run_down", "--no-figures").stdout
     assert "             ... the others are in events.csv\n" in said
-    with open("results/run_down/events.csv", encoding="utf-8") as rows:
-        assert sum("turns back" in row for row in rows) == 6
+    rows = (tmp_path / "results" / "run_down" / "events.csv").read_text(encoding="utf-8")
+    assert rows.count("turns back") == 6
 
 
 def test_a_run_that_ends_at_rest_ends_with_it():
