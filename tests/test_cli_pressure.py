@@ -7,6 +7,7 @@ from exports import FIRED, HEADER, columns_of_cycles, cycles, text
 from scene_texts import FREE, INDICATOR, edited
 
 from crankmbs import load_scene, read_pressure
+from crankmbs.figures.indicated import volume_figure
 
 ANGLE = np.arange(-360.0, 360.0, 1.0)
 
@@ -34,6 +35,12 @@ def test_it_writes_table_and_figures_and_says_what_was_done(export):
     ):
         assert sentence in result.stdout
     assert str(export) not in (export / "out" / "table.csv").read_text()
+
+
+def test_each_panel_over_the_volume_says_what_its_axes_are(export):
+    panels = volume_figure(read_pressure("export.csv")).axes
+    assert [ax.get_ylabel() for ax in panels] == ["cylinder pressure, absolute [bar]"] * 2
+    assert "clearance" in panels[1].get_xlabel()
 
 
 def test_by_default_it_writes_into_results(export):

@@ -10,6 +10,7 @@ from command_line import crankmbs_
 from test_fuel import fuelled
 
 from crankmbs import Fuel, Motion, Result, load_scene, simulate
+from crankmbs.cli.report import report
 from crankmbs.motion.firings import firings
 from crankmbs.result.event_words import did_not_fire, marks
 from crankmbs.scene.write import scene_files
@@ -82,3 +83,12 @@ def test_what_is_said_of_the_whole_run_is_not_read_from_its_end(tmp_path):
     assert [mark.words for mark in marks(end)][1:] == ["starter off"]
     assert not did_not_fire(end)
     assert marks(Result.load(whole.save(tmp_path))) == marks(whole)
+
+
+@pytest.mark.parametrize(
+    ("share", "words"), [(1e-18, "rounding"), (3.2e-10, "3.2e-10 of the peak")]
+)
+def test_an_energy_that_closes_below_rounding_is_said_to_close_to_it(share, words):
+    result = simulate(load_scene("coasting").with_(run__until="1 rev"))
+    found = replace(result.measures(), energy_closure=share)
+    assert f"energy       closes to {words}" in report("coasting", result, found)

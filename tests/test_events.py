@@ -126,6 +126,14 @@ def test_the_command_names_the_first_and_the_last_firing(tmp_path, monkeypatch):
         assert "decides q" not in said
 
 
+def test_the_command_says_where_the_rest_of_the_events_is(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    said = crankmbs_("run", "run_down", "--no-figures").stdout
+    assert "             ... the others are in events.csv\n" in said
+    rows = (tmp_path / "results" / "run_down" / "events.csv").read_text(encoding="utf-8")
+    assert rows.count("turns back") == 6
+
+
 def test_a_run_that_ends_at_rest_ends_with_it():
     brake = SpeedTable(file=Table((-9.0, 0.0, 0.0, 9.0), (4.0, 4.0, -4.0, -4.0)))
     result = simulate(wheel(brake, speed=8.0))

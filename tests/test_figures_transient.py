@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -62,6 +61,7 @@ def test_an_event_at_the_begin_of_the_first_cycle_is_in_it(start):
     speeds, _ = plot(start, "cycles").axes
     assert words(speeds) == ["starter on", "starter off", "first firing", "last firing"]
     assert speeds.texts[0].xy[0] == pytest.approx(0.5)
+    assert speeds.get_xlim() == (0.5, start.cycle_table.length + 0.5)
 
 
 def test_what_happens_after_many_reversals_is_marked():
@@ -92,12 +92,12 @@ def test_the_largest_loads_of_the_whole_run_are_marked(start):
     *_, loads = plot(start, "transient").axes
     peaks = {peak.name: peak for peak in reversed(run_peaks(start))}
     largest = max(p.value.value for p in run_peaks(start) if p.name == "crank pin")
-    dots: list[Any] = [line.get_xydata()[0] for line in loads.lines if line.get_marker() == "o"]
+    dots = np.array([line.get_xydata()[0] for line in loads.lines if line.get_marker() == "o"])
     tops = np.array([peaks["main bearing"].value.value, largest]) / 1e3
-    assert [y for _, y in dots] == pytest.approx(tops)
-    assert dots[0][0] == peaks["main bearing"].time
+    assert dots[:, 1] == pytest.approx(tops)
+    assert dots[0, 0] == peaks["main bearing"].time
     bearing, _, pin, _ = loads.lines[:4]
-    for line, (_, top) in zip((bearing, pin), dots, strict=True):
+    for line, top in zip((bearing, pin), dots[:, 1], strict=True):
         assert line.get_xdata()[0] == 0.0
         assert 0.9 * top < line.get_ydata().max() <= top * (1.0 + 1e-9)
     assert loads.texts[0].get_text().startswith("main bearing: ")

@@ -67,6 +67,7 @@ def volume_figure(indicated: Indicated) -> Figure:
     axes[0].set_ylabel(_pressure(indicated))
     if with_log:
         axes[1].set_xlabel("volume over the clearance volume [1]")
+        axes[1].set_ylabel(_pressure(indicated))
         logarithmic(axes[1].xaxis)
         logarithmic(axes[1].yaxis)
     handles, labels = axes[0].get_legend_handles_labels()

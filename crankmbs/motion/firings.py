@@ -33,7 +33,7 @@ def firings(motion: Motion) -> Firings:
 
     >>> result = simulate(load_scene("run_up").with_(run__until="0.2 s"))
     >>> firings(result.passes.answer).time.round(3).tolist()
-    [0.131]
+    [0.131, 0.182]
     """
     train = motion.train
     period, begin = train.scene.period, float(motion.cells[0].angle[0, 0])
