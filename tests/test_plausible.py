@@ -4,6 +4,7 @@ from dataclasses import replace
 from math import pi
 from pathlib import Path
 
+import numpy as np
 import pytest
 from turned import turned
 
@@ -11,6 +12,7 @@ from crankmbs import (
     Bearings,
     Constant,
     Crank,
+    CylinderTable,
     Piston,
     Quadratic,
     Rod,
@@ -18,6 +20,7 @@ from crankmbs import (
     SpeedTable,
     Start,
     Table,
+    TravelTable,
     load_scene,
     shipped_scenes,
 )
@@ -274,6 +277,32 @@ def test_the_slide_of_a_press_may_be_wide():
     """250 kg at a stroke of 100 mm were called more than solid steel as wide as the stroke."""
     crank, rod = Crank(radius=0.05, inertia=7.0), Rod(length=0.4)
     assert warnings(replace(BARS, crank=crank, rod=rod, piston=Piston(mass=250.0))) == ()
+
+
+MOTOR = Table((0.0, 12.0), (3000.0, 0.0))
+PRESS = load_scene("validation/scenes/press.toml")
+
+
+def worked(forward, back=0.0):
+    """The press with a force of two columns over the last 16 mm of its 80 mm."""
+    rows = np.array([0.0, 0.064, 0.064, 0.081]), [0.0, 0.0, 1.0, 1.0]
+    columns = [[share * force for share in rows[1]] for force in (forward, back)]
+    return PRESS.with_(force=(TravelTable(file=CylinderTable(rows[0], columns)),))
+
+
+def test_a_force_that_drives_beside_the_motor_is_said():
+    (said,) = warnings(worked(22000.0))
+    stroke = PRESS.running_gear[0].stroke
+    assert said.startswith("force[1]: the ")
+    assert float(said.split(" does ")[1].split(" J")[0]) == pytest.approx(
+        22000.0 * (stroke - 0.064), rel=2e-3
+    )
+    assert "negative while the piston moves towards the crank" in said
+    idle = PRESS.with_(start=Start(angle=0.0, speed=12.0), torque=(SpeedTable(file=MOTOR),))
+    assert warnings(worked(22000.0).with_(start=idle.start, torque=idle.torque)) == (said,)
+    braked = worked(22000.0).with_(torque=(Constant(torque=-20.0),))  # a motor of its own
+    for silent in worked(-22000.0), worked(22000.0, 23000.0), braked, PRESS:
+        assert warnings(silent) == ()
 
 
 def test_every_number_is_named():

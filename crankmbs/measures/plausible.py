@@ -322,6 +322,31 @@ def _loads(scene: Scene) -> Iterator[str]:
             )
 
 
+def _forces(scene: Scene) -> Iterator[str]:
+    """A force over the travel that does work on the crank where a motor already drives it, and no
+    gas takes the work of both, has the wrong sign."""
+    start = scene.start
+    if start is None or scene.gas is not None:
+        return
+    always = [load for load in scene.torque if not load.has_window]
+    ends = 0.0, start.speed  # a motor may give nothing at its idle speed
+    torques = [sum(float(load(0.0, start.angle, v)) for load in always) for v in ends]
+    if max(torque * start.speed for torque in torques) <= 0.0:
+        return
+    for number, force in enumerate(scene.force, start=1):
+        (forward, back), cylinder = force.law[:2], force.cylinder or 1
+        if forward is None or back is None or force.has_window:
+            continue
+        travel = np.linspace(0.0, scene.running_gear[cylinder - 1].stroke, 3601)
+        work = float(np.trapezoid(forward(travel) - back(travel), travel))
+        if work > 0.0:
+            yield (
+                f"force[{number}]: the {force.called} does {work:.4g} J of work on the crank in a "
+                "turn, which the loads drive, too; a force that resists is negative while the "
+                "piston moves towards the crank and positive on the way back"
+            )
+
+
 def _gas_work(scene: Scene) -> float:
     """Work of the gas over one period of the engine in the sense of +theta [J]."""
     work, gears = 0.0, scene.running_gear
@@ -347,4 +372,4 @@ def _gas_work(scene: Scene) -> float:
 
 _Rules = tuple[Callable[..., Iterator[str]], ...]
 _OF_GEAR: _Rules = (_stroke, _bore, _masses, _light_masses, _rod_length, _offset, _fold, _rod)
-_OF_SCENE: _Rules = (_inertia, _shells, _ambient, _peak, _loads)
+_OF_SCENE: _Rules = (_inertia, _shells, _ambient, _peak, _loads, _forces)
