@@ -130,6 +130,14 @@ def test_what_cannot_be_looked_up_is_refused():
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("angle", [["30 deg", "60 deg"], None, True, 1.0j])
+def test_what_is_no_angle_is_refused_in_a_sentence(angle):
+    result = simulate(load_scene("propeller").with_(run__until="1 cycles"))
+    with pytest.raises(InputError, match=r'one number \[rad\], or text .* "60 deg"; .* came; of'):
+        result.at(angle)
+    assert result.at(np.float64(1.0)).readings == result.at(1.0).readings
+
+
 def test_where_the_crank_turns_back_an_angle_has_no_one_time():
     with pytest.raises(InputError, match="rests or turns back"):
         at_angle(simulate(load_scene("run_down")), "60 deg")

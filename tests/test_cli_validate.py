@@ -248,6 +248,18 @@ def test_marks_close_to_one_another_are_all_legible():
             assert not any(one.overlaps(other) for other in boxes[:number])
 
 
+def test_a_formula_of_one_s_own_looks_like_none_of_the_causes_beside_it():
+    def side_thrust(phi, gas_force, rod_ratio):
+        return gas_force * rod_ratio * np.sin(phi)
+
+    rubs = simulate(load_scene("compressor").with_(friction={"ring_force": "50 N"}))
+    figure = budget_figure(budget(rubs, {"mine": side_thrust}), ("side thrust",), "mine")
+    top, bottom = figure.axes
+    mine, causes = curves(top)["mine"], curves(bottom)
+    assert "friction" in causes
+    assert all(line.get_color() != mine.get_color() for line in causes.values())
+
+
 def test_the_curves_of_a_budget_figure_add_up_to_the_thick_one(four):
     split = budget(four)
     figure = budget_figure(split, ("torque",))

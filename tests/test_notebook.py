@@ -184,6 +184,16 @@ def test_their_dataframes_have_errors_beside_values(short):
         assert row["symbol"] == reading.symbol
 
 
+def test_a_dataframe_of_measures_says_its_window_and_leaves_out_what_run_leaves_out(short):
+    assert short.measures().to_dataframe().attrs["window"] == "last cycle"
+    driven = simulate(load_scene("torque_driven")).measures()
+    table = driven.to_dataframe()
+    assert not driven.steady
+    assert table.attrs["window"] == driven.window.kind
+    assert not any("fluctuation" in name or "efficiency" in name for name in table.index)
+    assert any("fluctuation" in name for name in short.measures().to_dataframe().index)
+
+
 def test_a_dataframe_of_many_cylinders_has_a_line_for_each():
     result = simulate(load_scene("yi_diesel_free").with_(run__until="1 cycles"))
     measures, state = result.measures().to_dataframe(), result.at("60 deg").to_dataframe()

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from numbers import Real
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from crankmbs.compare.bodies import bodies_of
 from crankmbs.compare.quantities import QUANTITIES, observed
-from crankmbs.errors import InputError
+from crankmbs.errors import InputError, shown
 from crankmbs.measures.interpolate import read_at
 from crankmbs.measures.span import last_span, passes_over
 from crankmbs.result import Result
@@ -83,7 +84,8 @@ def at_angle(result: Result, angle: float | str) -> AtAngle:
 
     Parameters
     ----------
-    angle : [rad], or with its unit, such as "60 deg"; modulo the engine's period
+    angle : "60 deg", text with its unit; a bare number is in rad, as all numbers in Python are;
+        modulo the engine's period
 
     Raises
     ------
@@ -118,6 +120,11 @@ def angle_of(text: float | str) -> float:
     >>> round(angle_of("60 deg"), 3)
     1.047
     """
+    if isinstance(text, bool) or not isinstance(text, (str, Real)):
+        raise InputError(
+            'a crank angle is one number [rad], or text with its unit, such as "60 deg"; '
+            f"{shown(text)} came; of several, ask for one after the other"
+        )
     angle = quantity(text, "angle") if isinstance(text, str) else float(text)
     if not abs(angle) <= _FARTHEST:
         raise InputError(

@@ -50,6 +50,7 @@ FAMILIES = {
 _SHOWN = {"m": (1e-3, "mm"), "m/s^2": (1.0, "m/s²")}  # unit -> divisor and unit on an axis
 _UNTRUNCATED, *_TRUNCATED = LECTURES
 _GREGA, _YI = map(short_name, _TRUNCATED)
+_SUM = "sum of the causes"
 _BY_YI = f"formula of {_YI}"
 _ABSENT = 1e-9  # of the error: a peak so small has no percent
 _APART = 0.02  # of the larger: curves nearer than this are one line
@@ -57,7 +58,7 @@ _UNSEEN = 1e-3  # of the largest of a panel's causes: no line can be told from z
 _STYLES: dict[str, dict[str, Any]] = {
     "run": {"color": "black", "linewidth": 3.0},
     _BY_YI: {"color": "0.5", "linestyle": (0, (4, 2))},
-    "sum of the causes": {"color": "0.65", "linewidth": 7.0},
+    _SUM: {"color": "0.65", "linewidth": 7.0},
     **{name: line_of(k) for k, name in enumerate((_GREGA, _YI, CLOSED_FORM, _UNTRUNCATED))},
     f"{_GREGA} and {_YI}": line_of(0) | {"color": line_of(2)["color"]},
     **{name: line_of(k) for k, name in enumerate((*CAUSES, REST))},
@@ -163,7 +164,7 @@ def budget_figure(
             split.quantity,
             split.peak,
             {"run": split.simulated, reference or _BY_YI: split.values},
-            {"sum of the causes": split.total.curve, **_seen(split)},
+            {_SUM: split.total.curve, **_seen(split)},
         )
         for split in splits
     ]
@@ -195,6 +196,8 @@ def _figure(
     )
     users = [label for label in labels if label not in _STYLES]
     styles = _STYLES | {label: line_of(_USER + k) for k, label in enumerate(users)}
+    if _SUM in labels:  # beside causes, which have all the colours, a formula is drawn as Yi's is
+        styles |= dict.fromkeys(users, _STYLES[_BY_YI])
     figure, axes = slide(n, headline, [label for label in styles if label in labels])
     view = last_view(excerpt.result)
     degrees = view.degrees[excerpt.samples - excerpt.window.first]

@@ -133,6 +133,9 @@ class Measures:
     def to_dataframe(self) -> pd.DataFrame:
         """The measures as a pandas table in the units of its index, rpm, kW, bar, N, N m: value and
         error, and of peaks where they are [deg]. A sweep takes the measures by these names.
+        ``attrs["window"]`` says over what they are: "last cycle" or another kind of
+        `crankmbs.measures.Span`. Where the motion is not periodic, fluctuation and mechanical
+        efficiency mean nothing and are left out. The mean side force is that of its magnitude.
 
         >>> table = simulate(load_scene("yi_diesel")).measures().to_dataframe()
         >>> table.loc["mean speed [rpm]", "value"].round(6).item()

@@ -15,7 +15,7 @@ from crankmbs.digits import digits, error_digits
 from crankmbs.display import displayed
 from crankmbs.measures import Estimate, Measures
 from crankmbs.measures.names import angles_of, names_of, values_of
-from crankmbs.report.rows import Table, labelled
+from crankmbs.report.rows import Table, labelled, meaningless
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -90,10 +90,14 @@ def readings_frame(state: AtAngle) -> pd.DataFrame:
 
 
 def measures_frame(measures: Measures) -> pd.DataFrame:
-    """Every measure of a run, in the units that people read; of peaks where they are."""
+    """Every measure of a run that means something over its window, in the units that people read;
+    of peaks where they are."""
     names, angles, rows = names_of(measures.scene), angles_of(measures), list[Row]()
     period = measures.scene.period
+    left_out = meaningless(measures)
     for name, estimates in values_of(measures).items():
+        if name in left_out:
+            continue
         words, units = names[name].words, names[name].units
         for k, estimate in enumerate(estimates):
             crank, cycle = angles[name][k] if name in angles else (math.nan, None)
@@ -102,7 +106,9 @@ def measures_frame(measures: Measures) -> pd.DataFrame:
                 "cycle angle [deg]": math.nan if cycle is None else math.degrees(cycle),
             }
             rows.append((labelled(words, k + 1, len(estimates), units), units, estimate, degrees))
-    return _frame(rows)
+    frame = _frame(rows)
+    frame.attrs["window"] = measures.window.kind
+    return frame
 
 
 def comparison_frame(comparison: Comparison) -> pd.DataFrame:

@@ -26,6 +26,7 @@ __all__ = [
     "cycle_remark",
     "degrees_within",
     "labelled",
+    "meaningless",
     "measure_rows",
     "measure_tables",
     "not_periodic",
@@ -140,6 +141,15 @@ def not_periodic(measures: Measures) -> str:
     return f"not periodic: the speed changes by {drift:+.3g} {unit} over the {measures.window.kind}"
 
 
+def meaningless(measures: Measures) -> set[str]:
+    """Names of measures that mean nothing over a window, where the speed is not periodic.
+
+    >>> meaningless(simulate(load_scene("propeller")).measures())
+    set()
+    """
+    return set() if measures.steady else {"fluctuation", "mechanical_efficiency"}
+
+
 def measure_rows(measures: Measures) -> list[list[str]]:
     """Name with unit, value, error, of each measure over the window but peaks; what means nothing
     where the speed is not periodic is left out.
@@ -148,7 +158,7 @@ def measure_rows(measures: Measures) -> list[list[str]]:
     ['mean speed [rpm]', '3200.00']
     """
     names, rows = names_of(measures.scene), []
-    left_out = set() if measures.steady else {"fluctuation", "mechanical_efficiency"}
+    left_out = meaningless(measures)
     for name, estimates in values_of(measures).items():
         if name == "main_bearing_peak":  # the first of the peaks
             break

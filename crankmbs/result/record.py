@@ -201,7 +201,7 @@ class Result:
         return measure(self)
 
     def at(self, angle: float | str) -> AtAngle:
-        """Every quantity where the last cycle passes a crank angle: [rad], or such as "60 deg".
+        """Every quantity where the last cycle passes a crank angle: "60 deg", or a number in rad.
 
         As `crankmbs.at_angle`, which reads it from the motion as it was solved.
 
