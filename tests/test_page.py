@@ -213,7 +213,8 @@ def test_a_number_that_cannot_be_is_refused_as_a_key_of_a_scene_would_be(kept, n
     sentence = refused_number(knob, text)
     kept.type(name, text)
     unit = f", in {knob.unit}" if knob.unit else ""
-    assert kept.message == f"{sentence}; type for example {knob.value:.{knob.decimals}f}{unit}"
+    labelled = knob.label + sentence.removeprefix(name)
+    assert kept.message == f"{labelled}; type for example {knob.value:.{knob.decimals}f}{unit}"
     kept.type(name, f"{knob.value!r}")
     assert kept.message == ""
     kept.go(f"#{name}={text}")

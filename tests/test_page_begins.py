@@ -257,3 +257,25 @@ def test_targets_are_large_enough_for_a_finger(phone):
     phone.page.click("#more")
     for each in phone.page.locator("button:visible, select:visible, input:visible").all():
         assert each.bounding_box()["height"] >= 44.0
+
+
+@pytest.mark.parametrize(
+    ("name", "label", "which"),
+    [
+        ("yi_diesel_free", "rated speed of load", "cylinder 1 of 4; pale: the others"),
+        ("v_twin", "rated speed of load", "cylinder 1 of 2"),
+        ("two_stage_compressor", "rated speed of drive", "cylinder 1 of 2"),
+        ("grega_lecture", "speed", ""),
+    ],
+)
+def test_it_says_what_the_speed_is_which_cylinder_is_shown_and_whence_the_scene_is(
+    browser, tmp_path, name, label, which
+):
+    with opened(browser, tmp_path, name) as visited:
+        assert visited.settle().text("label[for=knob-speed]") == label
+        assert visited.page.text_content("#stage .which") == which
+        rated = visited.page.locator("#rated").all_inner_texts()
+        assert [label.split()[-1] in said and "mean speed" in said for said in rated] == (
+            [True] if label != "speed" else []
+        )
+        assert "Source: " in visited.text("footer")

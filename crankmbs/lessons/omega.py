@@ -13,7 +13,7 @@ from crankmbs.lessons.runs import changed, named, speed_of
 from crankmbs.measures import Estimate, measure
 from crankmbs.measures.summary import largest
 from crankmbs.numerics.arrays import Array
-from crankmbs.page.knobs import Knob
+from crankmbs.page.knobs import Knob, speed_label
 from crankmbs.result import Result
 from crankmbs.scene.run import Extent
 from crankmbs.scene.scene import Scene
@@ -61,7 +61,8 @@ def _moment(scene: Scene, result: Result) -> Section:
         "the moving parts gain energy; whether the crank speeds up depends on what the pistons and "
         "rods take of it. It does so over "
         '<output data-say="moment.share"></output> of the angles with such a surplus: '
-        '<output class="told" data-say="moment.verdict"></output>. Now move the speed.',
+        '<output class="told" data-say="moment.verdict"></output>. Now move the rated speed of the '
+        "load: the load then has its torque there, and the crank settles near it.",
         figure=Figure(
             name="moment",
             caption="Work per radian: what the gas gives to all pistons, what the load takes, and "
@@ -86,13 +87,13 @@ def _moment(scene: Scene, result: Result) -> Section:
 
 
 def _speed_knob(scene: Scene, result: Result) -> Knob:
-    """A slider of the speed that begins where the crank follows the gas: so slow that the energy
-    makes the speed swing a lot."""
+    """A slider of the load's rated speed that begins where the crank follows the gas: so slow that
+    the energy makes the speed swing a lot."""
     speed = speed_of(scene) / RPM
     slow = speed * min(1.0, math.sqrt(_energy_swing(result) / _SLOW))
     first = math.copysign(float(f"{abs(slow):.2g}"), speed)
     low, high = sorted((0.85 * first, 1.25 * speed))
-    return Knob("speed", "speed", "rpm", low, high, first, 0)
+    return Knob("speed", speed_label(scene), "rpm", low, high, first, 0)
 
 
 def _energy(scene: Scene, result: Result) -> Section:

@@ -15,7 +15,7 @@ from crankmbs.design.freed import NEAR_REST, UNEVEN
 from crankmbs.mechanics.variables import EVERY
 from crankmbs.page.export import encoded, exported, rules
 from crankmbs.page.film import film_of
-from crankmbs.page.knobs import FIRING_ORDERS, Choice, choices_of, first_of, knobs_of
+from crankmbs.page.knobs import FIRING_ORDERS, Choice, choices_of, first_of, knobs_of, rated_part
 from crankmbs.page.refusals import early_end, refusals, settling
 from crankmbs.page.script import joined
 from crankmbs.scene.force import PistonForce
@@ -28,6 +28,8 @@ from crankmbs.scene.whole import NO_INERTIA, OPEN_LOOP, UNCOVERED
 __all__ = ["filled", "given_of", "page_of", "policy", "shown_scene"]
 
 _FOLDER = Path(__file__).parent
+
+_LABELLED = ("crank.inertia:", "flywheel:")  # of a key that a knob turns, its label
 _NUMBERS = ("finite_number", "float_type", "greater_than_equal", "less_than_equal")
 _ON = "run it with crankmbs run"
 _ENDINGS = {
@@ -38,7 +40,7 @@ _ENDINGS = {
         "misfires make cycles differ, and the motion that repeats itself is one of several cycles: "
         "crankmbs run --until settled shows it"
     ),
-    "light": NEAR_REST,
+    "light": NEAR_REST.replace(*_LABELLED),
     "slow": f"too light or too slow: the engine would stall; {_ON}",
     "held": f"a jump of the loads holds the speed from both sides; {_ON}",
 }
@@ -77,6 +79,7 @@ def page_of(scene: Scene, stem: str) -> str:
         uneven="" if scene.fuel is None else UNEVEN,
         choices={choice.name: choice for choice in choices},
         first=first_of(shown),
+        rated=rated_part(shown),
         settles=shown.settles and not scene.settles,
     )
 
@@ -152,7 +155,7 @@ def given_of(scene: Scene) -> dict[str, Any]:
         "sentences": {
             "open_loop": OPEN_LOOP,
             "light_crank": LIGHT_CRANK,
-            "no_inertia": NO_INERTIA,
+            "no_inertia": NO_INERTIA.replace(*_LABELLED),
             "uncovered": [_uncovered(*numbered) for numbered in enumerate(scene.force, start=1)],
             "fold": _FOLD,
             **{kind: RULES[kind] for kind in _NUMBERS},

@@ -13,7 +13,17 @@ from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import CylinderTable
 from crankmbs.scene.units import RPM
 
-__all__ = ["AS_GIVEN", "FIRING_ORDERS", "Choice", "Knob", "choices_of", "first_of", "knobs_of"]
+__all__ = [
+    "AS_GIVEN",
+    "FIRING_ORDERS",
+    "Choice",
+    "Knob",
+    "choices_of",
+    "first_of",
+    "knobs_of",
+    "rated_part",
+    "speed_label",
+]
 
 AS_GIVEN = "given"
 _EVEN = 0.01  # coefficient of fluctuation with the heaviest flywheel of a prescribed speed
@@ -96,14 +106,42 @@ def _why_it_swings(scene: Scene) -> str:
     """What comes in pulses, by who drives: the pistons, or the torques from outside that do not
     depend on the crank angle."""
     assert scene.start is not None
-    angle, speed = scene.start.angle, scene.start.speed
-    even = [load for load in scene.torque if load.parts.over_angle is None]
     stored = "crank, rods and pistons store the difference."
     if not scene.torque and scene.gas is None:
         return "Pistons and rods speed up and slow down twice a turn; their energy is the crank's."
-    if sum(float(load(0.0, angle, speed)) for load in even) * speed > 0.0:
+    if _driven_from_outside(scene):
         return f"The torque of the drive is even, the work comes in pulses; {stored}"
     return f"The torque comes in pulses, the load takes it evenly; {stored}"
+
+
+def _driven_from_outside(scene: Scene) -> bool:
+    """Whether the torques that do not depend on the crank angle drive the crank at its start."""
+    assert scene.start is not None
+    angle, speed = scene.start.angle, scene.start.speed
+    even = [load for load in scene.torque if load.parts.over_angle is None]
+    return sum(float(load(0.0, angle, speed)) for load in even) * speed > 0.0
+
+
+def rated_part(scene: Scene) -> str:
+    """Whose torque the knob of the speed stretches over the speed, "load" or "drive"; "" where no
+    torque from outside depends on the speed.
+
+    >>> rated_part(load_scene("propeller")), rated_part(load_scene("two_stage_compressor"))
+    ('load', 'drive')
+    """
+    if scene.start is None or all(load.parts.over_speed is None for load in scene.torque):
+        return ""
+    return "drive" if _driven_from_outside(scene) else "load"
+
+
+def speed_label(scene: Scene) -> str:
+    """What the knob of the speed sets; a free crank finds its mean speed by itself.
+
+    >>> speed_label(load_scene("propeller"))
+    'rated speed of load'
+    """
+    part = rated_part(scene)
+    return f"rated speed of {part}" if part else "speed"
 
 
 def knobs_of(scene: Scene) -> tuple[Knob, ...]:
@@ -144,7 +182,7 @@ def _drive(scene: Scene) -> list[Knob]:
         rpm = speed / RPM
         low, high = sorted((0.25 * rpm, _above(1.75 * abs(rpm)) * math.copysign(1.0, rpm)))
         about = "the loads give their torque at this speed" if scene.torque else ""
-        knobs.append(Knob("speed", "speed", "rpm", low, high, rpm, 0, about))
+        knobs.append(Knob("speed", speed_label(scene), "rpm", low, high, rpm, 0, about))
     if scene.torque:
         about = "of what the scene gives"
         knobs.append(Knob("load", "load", "%", 0.0, 200.0, 100.0, 0, about))

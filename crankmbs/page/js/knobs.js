@@ -51,7 +51,8 @@ export class Knobs {
   /** A number that was typed: the knob as it was, with the reason, where it cannot be. */
   type(knob, text) {
     try {
-      this.turn(knob, numberOf(text.replace(COMMA, "$1.$2"), knob, this.rules));
+      const labelled = { ...knob, name: knob.label };
+      this.turn(knob, numberOf(text.replace(COMMA, "$1.$2"), labelled, this.rules));
       this.on.release();
     } catch (refused) {
       if (!(refused instanceof Refused)) throw refused;

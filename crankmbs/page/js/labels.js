@@ -1,4 +1,4 @@
-/** Names of arrows, beside the mechanism: they never cover what they name. */
+/** Names of arrows, beside the mechanism: they never cover what they name; and of cylinders. */
 
 export const LETTER = 0.6; // of the type: how wide a bold letter is
 const APART = 1.25; // of the type, between names
@@ -40,4 +40,20 @@ export function namesBeside(pen, names, { type, edge, sides }) {
       least = at + (APART + rows.length - 1) * type;
     }
   }
+}
+
+/** The chosen cylinder and others that stand beside it are drawn in full, the rest pale. */
+export function looksOf({ cylinders }, k, chosen) {
+  const apart = cylinders[k].bank !== cylinders[chosen].bank;
+  const first = cylinders.findIndex(({ bank }) => bank === cylinders[k].bank) === k;
+  if (k === chosen) return "cylinder chosen";
+  return apart && first ? "cylinder" : "cylinder pale";
+}
+
+/** Which of several cylinders is chosen, and what is pale. */
+export function whichOf(train, chosen) {
+  const { length: count } = train.cylinders;
+  const pale = train.cylinders.some((_, k) => looksOf(train, k, chosen) === "cylinder pale");
+  const others = pale ? "; pale: the others" : "";
+  return count > 1 ? `cylinder ${chosen + 1} of ${count}${others}` : "";
 }

@@ -3,7 +3,7 @@
 import { proportions, turnedBy } from "./drawing.js";
 import { BODIES, forcesOn } from "./forces.js";
 import { general, readable, roundBelow } from "./format.js";
-import { LETTER, boxBeside, namesBeside } from "./labels.js";
+import { LETTER, boxBeside, looksOf, namesBeside, whichOf } from "./labels.js";
 import { arrowOf, rodOf, webOf } from "./outlines.js";
 import { Pen, add, set, watched } from "./svg.js";
 
@@ -13,6 +13,7 @@ const TICKS = 24;
 const UNITS = 1000; // of the drawing per metre
 const SMALL = 0.85; // of the page's type: letters in the drawing
 const FOOT = 1.8; // of the letters' height, below the drawing: the scale of the forces
+const ROW = 1.4; // the same: which cylinder is shown
 const SHORTEST = 0.01; // of the largest force: what has an arrow
 
 export class Stage {
@@ -80,6 +81,7 @@ export class Stage {
     this.parts = [];
     for (const k of [...order, this.k]) this.parts[k] = this.cylinder(k);
     this.axle = add(root, "circle", { class: "axle" });
+    this.which = add(root, "text", { class: "which" }, whichOf(train, this.k));
     const ring = add(root, "g", { class: "ring" });
     if (this.magnified) {
       this.track = add(ring, "circle", { class: "track" });
@@ -94,10 +96,11 @@ export class Stage {
 
   /** The sizes of all that stands still. */
   fit() {
-    const { root, sizes, parts, axle } = this;
+    const { root, sizes, parts, axle, which } = this;
     const drawn = scaledBox(sizes.bounds);
     const words = { letters: this.letters, type: SMALL * this.size.type, lean: this.lean };
-    const foot = this.letters ? FOOT * words.type : 0;
+    const rows = (this.letters ? FOOT : 0) + (parts.length > 1 ? ROW : 0);
+    const foot = rows * words.type;
     const size = { ...this.size, height: Math.max(this.size.height - foot, 0) };
     const { left, top, width, height, scale } = boxBeside(drawn, size, words);
     const high = height + foot / scale;
@@ -106,6 +109,7 @@ export class Stage {
     root.style.setProperty("--px", (1 / scale).toPrecision(2));
     this.type = (SMALL * this.size.type) / scale;
     const middle = left + 0.5 * width; // what is wider than the drawing is room beside it
+    set(which, { x: middle, y: top + high - 0.4 * this.type, "font-size": this.type });
     const half = (0.5 * this.size.width) / scale;
     const above = top + 0.5 * (high - this.size.height / scale);
     this.sides = { left: drawn.left, right: drawn.left + drawn.width };
@@ -150,7 +154,7 @@ export class Stage {
   /** Still parts of a cylinder, and those that move. */
   cylinder(k) {
     const { bank } = this.train.cylinders[k];
-    const group = add(this.root, "g", { class: this.looks(k) });
+    const group = add(this.root, "g", { class: looksOf(this.train, k, this.k) });
     const fixed = add(group, "g", { transform: `rotate(${(-bank * 180) / Math.PI})` });
     const gas = add(fixed, "rect", { class: "gas" });
     const wall = add(fixed, "path", { class: "wall" });
@@ -184,15 +188,6 @@ export class Stage {
     set(crank, { d: webOf(scale(sizes.r)) });
     set(pin, { r: 0.2 * scale(sizes.r) });
     set(small, { r: 0.13 * scale(sizes.r) });
-  }
-
-  /** The chosen cylinder and others that stand beside it are drawn in full, the rest pale. */
-  looks(k) {
-    const { cylinders } = this.train;
-    const apart = cylinders[k].bank !== cylinders[this.k].bank;
-    const first = cylinders.findIndex(({ bank }) => bank === cylinders[k].bank) === k;
-    if (k === this.k) return "cylinder chosen";
-    return apart && first ? "cylinder" : "cylinder pale";
   }
 
   /** Move everything to a crank angle [rad]. */
