@@ -265,7 +265,7 @@ def test_targets_are_large_enough_for_a_finger(phone):
         ("yi_diesel_free", "rated speed of load", "cylinder 1 of 4; pale: the others"),
         ("v_twin", "rated speed of load", "cylinder 1 of 2"),
         ("two_stage_compressor", "rated speed of drive", "cylinder 1 of 2"),
-        ("grega_lecture", "speed", ""),
+        ("compressor", "speed", ""),
     ],
 )
 def test_it_says_what_the_speed_is_which_cylinder_is_shown_and_whence_the_scene_is(
