@@ -7,7 +7,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from crankmbs import Motion, Run, engine_orders, load_scene, orders, simulate
+from crankmbs import Layout, Motion, Run, engine_orders, load_scene, orders, simulate
 from crankmbs.mechanics.harmonics import closed_orders
 from crankmbs.scene.forces import ConstantForce, Damper
 from crankmbs.scene.parts import Friction
@@ -137,3 +137,11 @@ def test_they_do_not_depend_on_the_samples():
     )
     assert np.max(np.abs(wide.amplitude - fine.amplitude)) <= wide.error + fine.error
     assert wide.error < 1e-6 * np.max(wide.amplitude)
+
+
+def test_a_sum_that_cancels_errs_by_what_its_terms_round():
+    three = load_scene("propeller").with_(
+        run__until="settled", layout=Layout(firing_order=(1, 2, 3))
+    )
+    across = orders(simulate(three), "frame_force_y")
+    assert 0.0 < across.amplitude.max() <= across.error < 1e-8

@@ -12,6 +12,8 @@ from crankmbs.errors import InputError, shown
 from crankmbs.measures.estimate import ROUNDING
 from crankmbs.measures.nodes import nodes_of
 from crankmbs.measures.span import CYCLES, measured_span, passes_over
+from crankmbs.mechanics.peaks import peak
+from crankmbs.mechanics.variables import EVERY, SUMS
 from crankmbs.motion.motion import Motion
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
@@ -101,13 +103,16 @@ class Harmonics:
             raise InputError(
                 f"{shown(name)} is no variable with orders{there_are(name, sorted(variables))}"
             )
-        return self.split(lambda v: v[name])
+        alike = (v for k, v in variables.items() if EVERY[k].units == EVERY[name].units)
+        terms = max(map(peak, alike)) if name in SUMS else 0.0
+        return self.split(lambda v: v[name], terms)
 
-    def split(self, quantity: Callable[[Mapping[str, Array]], Array]) -> Orders:
+    def split(self, quantity: Callable[[Mapping[str, Array]], Array], terms: float = 0.0) -> Orders:
         """The orders of a quantity of the variables at the nodes.
 
         quantity : from the variables of the result, (p,) or (p, cylinders), to an array alike;
             with cylinders its orders count from each cylinder's cycle angle
+        terms : how large the terms of a sum are that may cancel; their rounding does not
         """
         (mean, parts, size), *others = (
             self._transformed(quantity, motion)
@@ -125,7 +130,7 @@ class Harmonics:
             np.abs(parts),
             np.mod(phase + math.pi, 2.0 * math.pi) - math.pi,
             mean,
-            self.passes.share * max(apart, default=math.inf) + ROUNDING * size,
+            self.passes.share * max(apart, default=math.inf) + ROUNDING * max(size, terms),
         )
 
     def _transformed(
