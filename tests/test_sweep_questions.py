@@ -308,7 +308,7 @@ def test_a_sample_is_points_over_each_knob_and_failures_are_counted():
     scene = load_scene("yi_diesel").with_(run__until="1 cycles")
     figure = sweep_figure(sweep(scene, Sample(vary, 8), executor=1), "peak crank pin force")
     assert len(figure.axes) == 2
-    assert "have none and are left white" in figure.get_supxlabel()
+    assert re.search(r"; without a value: [1-7]$", figure.get_supxlabel(), re.MULTILINE)
 
 
 @pytest.mark.parametrize(

@@ -100,13 +100,13 @@ def test_a_knob_without_effect_on_anything_gives_no_indices():
     vary = {"crank.mass": "1..2 kg", "crank.inertia": "1..2 kg m^2"}
     (found,) = sobol_indices(SMOOTH, vary, "peak side force", n=4, executor=1)
     assert (found.status, np.isnan(found.first[0].value)) == (1, True)
-    assert found.message == "largest side force is the same in all 16 runs"
+    assert found.message == "largest |side force| is the same in all 16 runs"
 
 
 def test_runs_without_the_measure_are_counted_and_placed():
     vary = {"rod.length": "0.03..0.2 m", MASS: "1..2 kg"}
     (found,) = sobol_indices(SMOOTH, vary, "peak side force", n=8, executor=1)
-    said = r"(\d+) of 32 runs have no largest side force, and indices need all; the first at "
+    said = r"(\d+) of 32 runs have no largest \|side force\|, and indices need all; the first at "
     said += r"rod\.length = 0\.0\d+ m, piston\.mass = 1\.\d+ kg: rod\.length must be at least .*"
     match = re.fullmatch(said, found.message)
     assert found.status == 1
@@ -126,7 +126,7 @@ def test_runs_without_the_measure_are_counted_and_placed():
         ),
         (CUBE, {"n": 1}, "n must be a power of two from 2 on"),
         (CUBE, {"seed": -1}, "seed must be a whole number from 0"),
-        (CUBE, {"measures": "fluctation"}, 'did you mean "fluctuation"?'),
+        (CUBE, {"measures": "fluctation"}, 'did you mean "coefficient of fluctuation"?'),
     ],
 )
 def test_what_has_no_indices_is_refused(vary, words, said):
@@ -138,11 +138,13 @@ def test_the_command_shows_derivatives_and_indices():
     words = ["sensitivity", "yi_diesel", "--of", "peak side force"]
     done = crankmbs_(*words, "--vary", "piston.mass", "--vary", "rod.length")
     assert done.exit_code == 0, done.output
-    assert re.search(r"largest side force \[N\] +piston\.mass \[kg\] +-?\d", done.stdout)
+    line = r"largest \|side force\| \[N\] +1678\.\d+ +piston\.mass \[kg\] +1\.14158 +-?\d"
+    assert re.search(line, done.stdout)
     ranges = ["--vary", "piston.mass=1..2 kg", "--vary", "rod.length=0.14..0.2 m"]
     done = crankmbs_(*words, *ranges, "--n", "4", "--workers", "1")
     assert done.exit_code == 0, done.output
-    assert "largest side force, from 16 runs\n\nknob " in done.stdout
+    assert "largest |side force|, from 16 runs\n\nknob " in done.stdout
+    assert "\npiston.mass = 1..2 kg " in done.stdout
     short = ["--vary", "piston.mass=1..2 kg", "--vary", "rod.length=0.03..0.2 m"]
     done = crankmbs_(*words, *short, "--n", "4", "--workers", "1")
     assert (done.exit_code, "16 runs have no" in done.stdout) == (3, True)

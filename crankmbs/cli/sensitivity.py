@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import nan
 from typing import TYPE_CHECKING, Annotated
 
@@ -53,8 +54,9 @@ def sensitivity(
     loaded, words = load_scene(path), measures or ["fluctuation"]
     with progress("solving"):
         if ranges:
-            indices = sobol_indices(loaded, varied(ranges), words, n=n, seed=seed, executor=workers)
-            report = "\n\n".join(_indices(shares) for shares in indices)
+            over = varied(ranges)
+            indices = sobol_indices(loaded, over, words, n=n, seed=seed, executor=workers)
+            report = "\n\n".join(_indices(shares, over) for shares in indices)
             lacks = any(shares.status for shares in indices)
         else:
             report, lacks = _derivatives(loaded, vary, words), False
@@ -70,26 +72,32 @@ def _derivatives(scene: Scene, names: list[str], measures: list[str]) -> str:
     for words in measures:
         for name in names:
             slope = sensitivity_of(scene, name, words)
+            units = slope.measure.about.units
             rows.append(
                 [
-                    with_unit(slope.measure.words, slope.measure.about.units),
+                    with_unit(slope.measure.words, units),
+                    cells(slope.reached, units)[0],
                     with_unit(slope.knob, slope.units),
-                    *cells(slope.derivative, slope.measure.about.units, slope.units),
+                    cells((slope.value, 0.0), slope.units)[0],
+                    *cells(slope.derivative, units, slope.units),
                     digits(
                         slope.elasticity,
                         slope.derivative.error * abs(slope.value / (slope.reached.value or nan)),
                     ),
                 ]
             )
-    return table(["measure", "knob", "derivative", "num. error", "change in % for 1 %"], rows)
+    slopes = ["derivative", "num. error", "% for 1 %"]
+    return table(["measure", "value", "knob", "at", *slopes], rows)
 
 
-def _indices(shares: SobolIndices) -> str:
+def _indices(shares: SobolIndices, ranges: Mapping[str, str]) -> str:
     if shares.status != 0:
         return f"{shares.measure.words}: {shares.message}"
     rows = [
         [name, *cells(first), *cells(total)]
-        for name, first, total in zip(shares.knobs, shares.first, shares.total, strict=True)
+        for name, first, total in zip(
+            map(" = ".join, ranges.items()), shares.first, shares.total, strict=True
+        )
     ]
     headings = ["knob", "first order", "+- 95 %", "total", "+- 95 %"]
     note = "+- 95 %: what sampling may move an index by, and the numerical error of the measure"

@@ -247,3 +247,5 @@ def _panel(
     for label, (degrees, curve) in curves.items():
         ax.plot(degrees, curve / scale, **styles[label], label=label)
     ax.set_ylabel(f"[{unit}]" if peak is None else f"error [{unit}]")
+    # as many ticks whatever the height: the layout leaves room for the numbers that it sees
+    ax.locator_params("y", nbins=3 if peak is None else 6)

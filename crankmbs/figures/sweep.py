@@ -121,7 +121,7 @@ def sweep_figure(
     missing = int(np.count_nonzero(np.isnan(values.values)))
     lines = [str(data.attrs.get("title", "")), f"{values.size} cases; numerical error at most "]
     lines[1] += f"{error_digits(error / scale)} {unit}"
-    lines[1] += f"; {missing} have none and are left white" if missing else ""
+    lines[1] += f"; without a value: {missing}" if missing else ""
     if at is not None and not np.nanmin(drawn.values) <= at <= np.nanmax(drawn.values):
         lines.append(f"all cases lie on one side of {_amount(drawn)}")
     caption(figure, [line for line in lines if line])

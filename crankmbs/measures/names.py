@@ -10,7 +10,7 @@ from crankmbs.measures.peaks import SPEEDS, quantities_of, torque_of_rods
 from crankmbs.measures.summary import Measures
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Angles", "Named", "angles_of", "names_of", "values_of"]
+__all__ = ["Angles", "Named", "angles_of", "names_of", "signless", "values_of"]
 
 Angles = tuple[float, float | None]
 """Crank angle and, of what belongs to a cylinder, cycle angle of a peak [rad]."""
@@ -56,7 +56,8 @@ def names_of(scene: Scene) -> dict[str, Named]:
     names = {name: about for name, about in single.items() if about is not None}
     joints = joints_of(scene)
     for joint, of in {each.joint: each.of for each in joints}.items():
-        key, force = joint.replace(" ", "_"), f"{joint.removesuffix(' force')} force"
+        key = joint.replace(" ", "_")
+        force = signless(f"{joint.removesuffix(' force')} force")
         names[f"{key}_peak"] = Named("N", f"largest {force}", of)
         names[f"{key}_mean"] = Named("N", f"mean {force}", of)
         if shell_area(scene, joint) is not None:
@@ -64,8 +65,17 @@ def names_of(scene: Scene) -> dict[str, Named]:
             names[f"{key}_specific_mean"] = Named("N/m^2", f"mean specific load, {joint}", of)
     for quantity in (*quantities_of(scene)[len(joints) :], *SPEEDS):
         of = "cylinder" if quantity.number else ""
-        names[_key(quantity.name)] = Named(quantity.units, quantity.name, of)
+        names[_key(quantity.name)] = Named(quantity.units, signless(quantity.name), of)
     return names
+
+
+def signless(name: str) -> str:
+    """What a force with a sign is called where its magnitude is meant.
+
+    >>> signless("side force"), signless("crank pin force")
+    ('|side force|', 'crank pin force')
+    """
+    return f"|{name}|" if name in ("side force", "applied force") else name
 
 
 def values_of(measures: Measures) -> dict[str, tuple[Estimate, ...]]:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from crankmbs.digits import digits, error_digits
 from crankmbs.display import displayed
 from crankmbs.measures import Estimate, JointForce, Measures
-from crankmbs.measures.names import Named, names_of, values_of
+from crankmbs.measures.names import Named, names_of, signless, values_of
 from crankmbs.measures.peaks import Peak, run_peaks
 from crankmbs.measures.span import TURNS_BACK
 from crankmbs.result import Result
@@ -253,8 +253,7 @@ def _specific(measures: Measures) -> list[list[str]]:
 
 
 def _words(load: JointForce | Peak) -> str:
-    name = load.joint if isinstance(load, JointForce) else load.name
-    return f"|{name}|" if name in ("side force", "applied force") else name
+    return signless(load.joint if isinstance(load, JointForce) else load.name)
 
 
 def labelled(name: str, number: int | None, count: int, units: str) -> str:
