@@ -89,7 +89,8 @@ class Balance:
                 f"the counterweights together, {abs(moment):.6g} kg m at {at:.6g} degrees, do not "
                 "lie along the crank's reference line, where center_of_mass is; to turn that line "
                 f"{verb} {abs(turn):.6g} degrees {more} every phase of [layout], and {back} as "
-                f"much {less} the angle of the start"
+                f"much {less} the angle of the start; the centre of mass that the crank has turns "
+                "with it"
             )
         radius = scene.crank.radius
         mass = scene.crank.mass or abs(float(moment.real)) / radius

@@ -37,6 +37,7 @@ _MOST_MARKS = 24  # events that can be told apart in a panel
 _LABEL = 0.1  # of a panel's width, what the words of an event take
 _HAIR = 1e-9  # of a cycle: an event at its begin or end may be so far outside by rounding
 _HEAD = 0.3  # of a panel's height, kept free above the curve for them
+_ABOVE = 0.2  # of a panel: room for the labels of two peaks over the curves
 _JOINTS = {"main bearing": "main_bearing_force", "crank pin": "crank_pin_force"}
 _STRONGLY = 0.5  # of the highest speed: in a start, a run-up, a run-down, a crank that turns back
 
@@ -190,12 +191,14 @@ def _loads(ax: Axes, result: Result, curves: dict[str, Array]) -> None:
         right = top.time > 0.5 * (curves["time"][0] + curves["time"][-1])
         ax.annotate(
             f"{joint}: {size:.4g} {unit} at {top.time:.4g} s, {where:.6g} deg",
-            (top.time, size),
-            xytext=(-8 if right else 8, -12 * number),
+            (top.time, 1.0),
+            xycoords=("data", "axes fraction"),
+            xytext=(-8 if right else 8, -10 - 12 * number),
             textcoords="offset points",
             horizontalalignment="right" if right else "left",
             verticalalignment="center",
             fontsize=9,
-            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8},
         )
+    low, high = ax.get_ylim()
+    ax.set_ylim(low, high + _ABOVE * (high - low))
     ax.set_ylabel(f"bearing load [{unit}]")

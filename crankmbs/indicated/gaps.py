@@ -47,6 +47,7 @@ def bridged(record: Record, channel: Channel) -> tuple[Array, list[str]]:
         listed = ", ".join(str(k + 1) for k in out[:10]) + (" ..." if len(out) > 10 else "")
         remarks.append(
             f"{channel.name}: {len(out)} of {len(values)} cycles are left out for missing rows, or "
-            f"more than {_LONGEST} missing cells in a row: {listed}"
+            f"more than {_LONGEST} missing cells in a row: {listed}; "
+            "the others are numbered without them"
         )
     return values, remarks

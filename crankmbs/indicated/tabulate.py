@@ -60,9 +60,10 @@ def table_of(
     count = chosen.shape[1]
     long = np.concatenate([angle + k * period for k in range(count)])
     which = f"cycle {first}" if first == last else f"cycles {first} to {last}"
+    gap = "" if all(each.follow for each in cut) or count == 1 else ", which do not all follow"
     return (
         _tabulated(long, chosen.reshape(len(cylinders), -1)),
-        f"the table holds {which} of {whole}; {words}",
+        f"the table holds {which} of {whole}{gap}; {words}",
     )
 
 

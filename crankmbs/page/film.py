@@ -28,7 +28,7 @@ _PRESSURES = 24_000  # over all cylinders: 256 kB; only the colour of the gas co
 _CHECKED = np.arange(1, 10, 2) / 10.0  # places between two frames at which their cubic is tried
 _SHARE = 0.05  # of the last digit shown, by which cubics may be wrong there
 _ANGLE_DIGITS, _SPEED_DIGITS = 1, 4  # after the point [deg]; of the highest speed [rpm]
-_MARKS = 8
+_MARKS = 24
 
 
 @dataclass(frozen=True)

@@ -55,7 +55,7 @@ def machine_rows(scene: Scene) -> list[tuple[str, str]]:
         ("crank", _crank(scene)),
         ("rod", _rod(common)),
         ("piston", _piston(common)),
-        ("dead centres", _dead_centres(common)),
+        ("dead centres", _dead_centres(common, several=len(scene.cylinders) > 1)),
         *_unlike(scene, common),
         ("cylinders", _cylinders(scene)),
         ("gas", _gas(scene)),
@@ -95,7 +95,7 @@ def _unlike(scene: Scene, common: RunningGear) -> list[tuple[str, str]]:
         for row in (
             (f"cylinder[{number}]", f"radius {gear.radius * 1e3:.6g} mm; rod: {_rod(gear)}"),
             ("", f"piston: {_piston(gear)}"),
-            ("", f"dead centres: {_dead_centres(gear)}"),
+            ("", f"dead centres: {_dead_centres(gear, several=False)}"),
         )
     ]
 
@@ -126,12 +126,12 @@ def _piston(gear: RunningGear) -> str:
     return f"mass {piston.mass:.6g} kg{bore}{offset}{rod}"
 
 
-def _dead_centres(gear: RunningGear) -> str:
+def _dead_centres(gear: RunningGear, *, several: bool) -> str:
     at = " and ".join(f"{angle:.6g}" for angle in np.degrees(dead_centres(*gear.shape)))
     text = f"cycle angles {at} deg, stroke {gear.stroke * 1e3:.6g} mm"
     area = gear.piston.gas_area
     if area is not None:
-        text += f", displaces {gear.stroke * area * 1e6:.6g} cm^3"
+        text += f", displaces {gear.stroke * area * 1e6:.6g} cm^3{' each' * several}"
     return text
 
 

@@ -53,6 +53,7 @@ _WHOLE_RUN = [
     "cycle",
 ]
 _MPA = 1e6  # Pa in N/mm^2
+_NO_TIME = 1e-6  # of the latest peak: the begin of the run
 _SAME = 1e-9  # of a piston speed: no more than rounding
 
 
@@ -222,11 +223,12 @@ def _of_run(peaks: tuple[Peak, ...], scene: Scene) -> list[list[str]]:
     counts = Counter(peak.name for peak in peaks)
     start = scene.start or scene.motion
     assert start is not None
+    least = _NO_TIME * max(peak.time for peak in peaks)
     return [
         [
             labelled(_words(top), top.number, counts[top.name], top.units),
             *_cells(top.units, top.value),
-            f"{top.time:.6g}",
+            f"{top.time:.6g}" if top.time > least else "0",
             *_angles(top.crank_angle, top.cycle_angle, scene.period),
             str(int(abs(top.crank_angle - start.angle) / scene.period) + 1),
         ]

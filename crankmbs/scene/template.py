@@ -17,7 +17,7 @@ title = {title}
 radius = "40 mm"
 inertia = "0.12 kg m^2"         # about the crank axis, flywheel included; [motion] does without
 #mass = "8 kg"                  # counts for gravity and the main-bearing force
-#center_of_mass = "-5 mm"       # from the axis along the throw; negative: counterweight
+#center_of_mass = "-5 mm"       # along the throw of phase 0; negative: counterweight
 
 [rod]
 length = "140 mm"

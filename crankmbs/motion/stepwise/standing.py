@@ -81,7 +81,7 @@ def said(standing: Standing, allowed: int = 0) -> tuple[int, str]:
 
     allowed : evaluations of a step
 
-    >>> said(Standing((State(0.0, 0.0, 0.0, 0.0),), ending=Ending.STUCK, where=0.0))
+    >>> said(Standing((State(0.0, 0.0, 0.0, 0.0),), ending=Ending.STUCK, angle=0.0))
     (0, 'at rest at 0 degrees: no torque moves the crank from here')
     """
     omega = standing.states[0].omega
