@@ -168,7 +168,10 @@ def test_counterweights_beside_the_reference_line_have_no_centre_of_mass(tmp_pat
     for one, other in zip(beside.remaining, turned.remaining, strict=True):
         assert one.after.value == pytest.approx(other.after.value, rel=1e-9)
     monkeypatch.chdir(tmp_path)
-    refused("balance", "v_twin", "--no-figures", "-o", "mine.toml")
+    done = crankmbs_("balance", "v_twin", "--no-figures", "-o", "mine.toml")
+    assert done.exit_code == 2
+    assert "counterweight, mass times radius" in done.stdout
+    assert "do not lie along the crank's reference line" in done.stderr
     assert list(tmp_path.iterdir()) == []
 
 

@@ -373,6 +373,15 @@ def test_the_command_solves():
     done = crankmbs_("solve", "yi_diesel", *vary, "--minimize", "peak crank pin force", *condition)
     assert done.exit_code == 0, done.output
     assert "<= 5000" in done.stdout
+    free = crankmbs_(
+        "solve",
+        "propeller",
+        "--vary",
+        "crank.inertia=0.2..0.3 kg m^2",
+        "--for",
+        "fluctuation = 1.2 %",
+    )
+    assert "measured over the last cycle, settled or not" in free.stdout
     assert "give --for" in refused("solve", "yi_diesel", *vary)
 
 

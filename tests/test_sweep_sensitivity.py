@@ -145,6 +145,7 @@ def test_the_command_shows_derivatives_and_indices():
     assert done.exit_code == 0, done.output
     assert "largest |side force|, from 16 runs\n\nknob " in done.stdout
     assert "\npiston.mass = 1..2 kg " in done.stdout
+    assert "settled or not" not in done.stdout  # the speed is prescribed
     short = ["--vary", "piston.mass=1..2 kg", "--vary", "rod.length=0.03..0.2 m"]
     done = crankmbs_(*words, *short, "--n", "4", "--workers", "1")
     assert (done.exit_code, "16 runs have no" in done.stdout) == (3, True)

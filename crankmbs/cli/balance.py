@@ -43,8 +43,13 @@ def balance(
     folder = results_folder(path, out)
     with progress("balancing"):
         weights = balanced(machine, part_of, cost_cap=cost_cap)
-        pasted = None if write is None else _pasted(machine, weights)  # before anything is written
-        lines = [_report(path.stem, weights), "", *_crank(machine, weights, cost_cap)]
+        report = _report(path.stem, weights)
+        try:
+            pasted = None if write is None else _pasted(machine, weights)
+        except InputError:  # before anything is written; what was found is shown all the same
+            echo(report)
+            raise
+        lines = [report, "", *_crank(machine, weights, cost_cap)]
     written = ["balance.csv"]
     with together(folder) as part:
         (part / "balance.csv").write_text(_csv(weights), encoding="utf-8")

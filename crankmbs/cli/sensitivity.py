@@ -10,7 +10,7 @@ from typer import Exit, Option, echo
 
 from crankmbs.cli.options import SceneName
 from crankmbs.cli.progress import progress
-from crankmbs.cli.sweep import varied
+from crankmbs.cli.sweep import varied, window_note
 from crankmbs.cli.text import cells, heading, table, with_unit
 from crankmbs.digits import digits
 from crankmbs.errors import InputError
@@ -60,7 +60,7 @@ def sensitivity(
             lacks = any(shares.status for shares in indices)
         else:
             report, lacks = _derivatives(loaded, vary, words), False
-    echo(f"{heading(path.stem, loaded.title)}\n\n{report}")
+    echo("\n\n".join(filter(None, [heading(path.stem, loaded.title), report, window_note(loaded)])))
     if lacks:
         raise Exit(3)
 

@@ -8,7 +8,7 @@ from typer import Exit, Option, echo
 
 from crankmbs.cli.options import SceneName
 from crankmbs.cli.progress import progress
-from crankmbs.cli.sweep import varied
+from crankmbs.cli.sweep import varied, window_note
 from crankmbs.cli.text import cells, heading, table, with_unit
 from crankmbs.display import displayed
 from crankmbs.errors import InputError
@@ -56,7 +56,7 @@ def solve(
         else:
             lowest = minimize(loaded, ranges, str(least), subject_to or [])
             status, report = lowest.status, _minimum(lowest)
-    echo(f"{heading(path.stem, loaded.title)}\n\n{report}")
+    echo("\n\n".join(filter(None, [heading(path.stem, loaded.title), report, window_note(loaded)])))
     if status != 0:
         raise Exit(3)
 

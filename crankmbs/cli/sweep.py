@@ -17,10 +17,11 @@ from crankmbs.cli.text import cells, heading, table, with_unit
 from crankmbs.errors import CrankmbsError, InputError, shown
 
 if TYPE_CHECKING:
+    from crankmbs.scene.scene import Scene
     from crankmbs.sweep.plan import Plan
     from crankmbs.sweep.summary import Bounds, Summary
 
-__all__ = ["sweep", "varied"]
+__all__ = ["sweep", "varied", "window_note"]
 
 _ENDED = {
     0: "reached their end",
@@ -83,6 +84,16 @@ def sweep(
     echo(f"{title}\n\n{_report(plan, result)}{also}\n\nwrote {out}")
     if 0 not in result.ended:
         raise Exit(3)
+
+
+def window_note(scene: Scene) -> str:
+    """Over what measures of cases are, where that need not be a settled motion."""
+    if scene.settles or scene.start is None:
+        return ""
+    return (
+        "each run as the scene has it, measured over the last cycle, settled or not; "
+        'until = "settled" in [run] asks for settled motions'
+    )
 
 
 def varied(texts: list[str]) -> dict[str, str]:

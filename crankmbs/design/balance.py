@@ -19,7 +19,7 @@ from crankmbs.simulate import simulate
 
 __all__ = ["Balance", "Remaining", "balance"]
 
-_ALONG = 1e-9  # of a throw's counterweight: what lies across the reference line
+_ALONG = 1e-9  # of a throw's counterweight: what lies across the reference line, or is left
 _ORDERS = (1.0, 2.0)
 _VECTORS = {"frame force": "frame_force", "rocking moment": "rocking_moment"}
 
@@ -80,6 +80,8 @@ class Balance:
         scene = self.result.scene
         throws = np.array([np.exp(1j * (c.phase + c.bank)) for c in scene.cylinders])
         moment = complex(-np.array(self.per_throw) @ throws)
+        if abs(moment) <= _ALONG * max(self.per_throw):  # they cancel
+            moment = 0j
         if abs(moment.imag) > _ALONG * max(self.per_throw):
             at = float(np.degrees(np.angle(moment)))
             turn = (at + 90.0) % 180.0 - 90.0  # to the nearer end of the reference line

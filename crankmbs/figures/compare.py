@@ -62,6 +62,7 @@ _STYLES: dict[str, dict[str, Any]] = {
     **{name: line_of(k) for k, name in enumerate((_GREGA, _YI, CLOSED_FORM, _UNTRUNCATED))},
     f"{_GREGA} and {_YI}": line_of(0) | {"color": line_of(2)["color"]},
     **{name: line_of(k) for k, name in enumerate((*CAUSES, REST))},
+    "formula": line_of(0),  # what one of the user's own cuts off
 }
 _USER = 5  # the first line for formulas of the user: dashed, of a colour that no reference has
 
@@ -169,7 +170,8 @@ def budget_figure(
         for split in splits
     ]
     drawn = {label for column in columns for label in column.errors}
-    unseen = [cause.name for cause in splits[0].causes if cause.name not in drawn]
+    names = [splits[0].heading(cause.name) for cause in splits[0].causes]
+    unseen = [name for name in names if name not in drawn]
     about = "error: formula minus run, and its causes"
     if unseen:
         about += f" (too small: {', '.join(unseen)})"
@@ -179,7 +181,11 @@ def budget_figure(
 def _seen(split: Split) -> dict[str, Array]:
     """The curves of the causes that are worth something, by name."""
     least = _UNSEEN * max(cause.size.largest for cause in split.causes)
-    return {c.name: c.curve for c in split.causes if split.share(c) and c.size.largest >= least}
+    return {
+        split.heading(cause.name): cause.curve
+        for cause in split.causes
+        if split.share(cause) and cause.size.largest >= least
+    }
 
 
 def _figure(
