@@ -36,7 +36,9 @@
   const dead = page.geometry.deadCentres(shown.train.gears[k].shape);
   const middle = 0.5 * (shown.angles[77] + shown.angles[78]);
   const [, csv] = page.taken.dataFile(given, shown);
-  return csv.text().then((data) => JSON.stringify({
+  // the stage's own observer, which tells it its size, was made before this one and is called first
+  const fitted = new Promise((done) => new ResizeObserver(done).observe(root));
+  return Promise.all([csv.text(), fitted]).then(([data]) => JSON.stringify({
     data,
     mean: shown.mean, gain: shown.gain, fluctuation: shown.fluctuation, leads: shown.leads,
     settled: shown.settled, prescribed: shown.prescribed, angles: shown.angles,
