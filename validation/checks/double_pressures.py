@@ -25,8 +25,8 @@ __all__ = ["mean_pressures"]
 
 def mean_pressures(case: Case) -> Outcome:
     """Mean effective pressure of either end in every cycle of a prescribed motion, and the powers
-    of both over the last period, against the integrals of p dV: the largest difference over the largest
-    pressure, or power."""
+    of both over the last period, against the integrals of p dV: the largest difference over the
+    largest pressure, or power."""
     worst, said = 0.0, ""
     for seed in _seeds(case):
         scene = _driven(_plain(random_double(seed)))
@@ -82,8 +82,8 @@ def _driven(scene: Scene) -> Scene:
 def _of_measures(
     scene: Scene, result: Result, exact: dict[str, Array], largest: float
 ) -> dict[str, float]:
-    """By how much the measures over the last period are off: pressures over the largest, powers over the speed times
-    area times radius at it."""
+    """By how much the measures over the last period are off: pressures over the largest, powers
+    over the speed times area times radius at it."""
     found = result.measures()
     apart, radius = {}, scene.crank.radius
     count = round(abs(found.window.angle) / scene.period)  # cycles, until all comes again
