@@ -38,7 +38,7 @@ KINDS = (
         "Nothing but the scene: other equations and other methods, mostly in 25 to 40 digits or "
         "80-bit floats, that never import crankmbs.",
         "computed changing.governed changing.mean_pressures double.every_variable "
-        "double_pressures.mean_pressures "
+        "double.mean_pressures "
         "frame.by_momentum indicator steam.in_full "
         "journals.beams measured settled.fluctuation settled.long_run settled.set_free",
     ),

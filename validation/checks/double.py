@@ -61,8 +61,8 @@ def every_variable(case: Case) -> Outcome:
 
 def mean_pressures(case: Case) -> Outcome:
     """Mean effective pressure of either end in every cycle of a prescribed motion, and the powers
-    of both over the last, against the integrals of p dV: the largest difference over the largest
-    pressure, or power."""
+    of both over the last period, against the integrals of p dV: the largest difference over the
+    largest pressure, or power."""
     worst, said = 0.0, ""
     for seed in _seeds(case):
         scene = _driven(_plain(random_double(seed)))
@@ -151,16 +151,17 @@ def _driven(scene: Scene) -> Scene:
 def _of_measures(
     scene: Scene, result: Result, exact: dict[str, Array], largest: float
 ) -> dict[str, float]:
-    """By how much the measures are off: pressures over the largest, powers over the speed times
-    area times radius at it."""
+    """By how much the measures over the last period are off: pressures over the largest, powers
+    over the speed times area times radius at it."""
     found = result.measures()
     apart, radius = {}, scene.crank.radius
+    count = round(abs(found.window.angle) / scene.period)  # cycles, until all comes again
     for end, name, area in (
         ("head_end", "imep", scene.piston.gas_area or 0.0),
         ("crank_end", "imep_crank_end", scene.piston.crank_end_area),
     ):
         ours = getattr(found, name)
-        last = exact[name][-1]
+        last = exact[name][-count:].mean(axis=0)
         apart[f"measured {name}"] = (
             max(abs(one.value - value) for one, value in zip(ours, last, strict=True)) / largest
         )
