@@ -17,7 +17,8 @@ import { partsOf } from "./refine.js";
 import { settle } from "./settled.js";
 import { speedLaw } from "./speed.js";
 import { strongOf } from "./strong.js";
-import { edgesOf, nodeMaker, reduceAt, split } from "./tables.js";
+import { nodeMaker, tableMaker } from "./table.js";
+import { edgesOf, reduceAt, split } from "./tables.js";
 
 const ROUNDS = 8; // of cutting cells
 const MOST_CELLS = 20000;
@@ -29,6 +30,7 @@ export class Engine {
     this.rules = rules;
     this.nodes = nodeMaker();
     this.finer = nodeMaker();
+    this.samples = tableMaker();
     this.shapes = remembering((lengths) =>
       lengths.map(([radius, length, offset]) => ({ radius, length, offset })));
     this.loops = remembering((shapes) => shapes.map((shape) => new Loop(shape)));
@@ -145,9 +147,9 @@ class Free {
     this.to = travel.theta;
   }
 
-  /** The sample at a crank angle [rad] between `from` and `to`. */
-  at(theta) {
-    return this.path.at(this.train, theta);
+  /** The sample at a crank angle [rad] between `from` and `to`; of : `movingAt` there. */
+  at(theta, of) {
+    return this.path.at(this.train, theta, of);
   }
 
   /** Crank angles from one to another between which all is smooth. */
@@ -171,12 +173,12 @@ class Settled {
     this.late = this.at(start.angle).time;
   }
 
-  /** The sample at any crank angle [rad]; time counts from the start's angle. */
-  at(theta) {
+  /** The sample at any crank angle [rad], time from the start's angle on; of : as above. */
+  at(theta, of) {
     const { train, period, sense, base, path } = this;
     const turns = Math.floor((sense * (theta - base)) / period);
     const within = theta - sense * turns * period;
-    const found = readCell(train, path.rule, path.cellAt(within), within);
+    const found = readCell(train, path.rule, path.cellAt(within), within, of);
     return { ...found, theta, time: found.time + turns * this.duration - this.late };
   }
 
