@@ -51,13 +51,14 @@ export class Engine {
     const { crank, cylinders, levers, gravity, friction, loads, fuel, period } = scene;
     const gears = this.gears(scene);
     const [{ shape, piston }] = gears;
-    const machine = { gears, shape, piston, crank, cylinders, levers };
     const pressures = quick ? this.pressures.quick : this.pressures.fine;
     const share = piston.crank_end_share;
     const { pressure, combustion, crank_end } =
       pressures(scene.gas, shape, share, quick ? SEEN : DIAGRAM);
-    const outside = { gravity, friction, loads, fuel, period, applies: scene.force.length > 0 };
-    return { ...machine, ...outside, pressure, combustion, crank_end };
+    return {
+      gears, shape, piston, crank, cylinders, levers, gravity, friction, loads, fuel, period,
+      pressure, combustion, crank_end, applies: scene.force.length > 0,
+    };
   }
 
   /** What moves in every cylinder, with the forces from outside on its piston. */
@@ -66,11 +67,12 @@ export class Engine {
     const shapes = this.shapes(parts.map((each) =>
       [each.radius, each.rod.length, each.piston.offset]));
     const loops = this.loops(shapes);
-    return parts.map((part, k) => {
+    return parts.map(({ radius, rod, piston }, k) => {
       const applied = appliedTo(force, k);
       const drag = applied.reduce((sum, { viscous }) => sum + viscous, friction?.viscous ?? 0);
       const top = topPosition(shapes[k]);
-      return { ...part, shape: shapes[k], loop: loops[k], top, applied, drag };
+      const [shape, loop] = [shapes[k], loops[k]];
+      return { radius, rod, piston, shape, loop, top, applied, drag };
     });
   }
 
@@ -179,7 +181,9 @@ class Settled {
     const turns = Math.floor((sense * (theta - base)) / period);
     const within = theta - sense * turns * period;
     const found = readCell(train, path.rule, path.cellAt(within), within, of);
-    return { ...found, theta, time: found.time + turns * this.duration - this.late };
+    found.theta = theta;
+    found.time += turns * this.duration - this.late;
+    return found;
   }
 
   /** Crank angles from one to another between which all is smooth. */
