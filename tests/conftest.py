@@ -47,15 +47,15 @@ def read(tmp_path):
     return parse
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def browser():
-    """A browser for the visits of a test file."""
+    """A browser for all visits of one process, each of them in a context of its own."""
     with started() as opened:
         yield opened
 
 
 @pytest.fixture(scope="module")
-def page():
+def page(browser):
     """The page's engine in a browser."""
-    with engine() as opened:
+    with engine(browser) as opened:
         yield opened
