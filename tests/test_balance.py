@@ -112,6 +112,63 @@ def test_unlike_cylinders_each_have_their_own():
     assert found.crank["center_of_mass"] * found.crank["mass"] == pytest.approx(own[1] - own[0])
 
 
+def shared_pin(small=None, **layout):
+    """A 90 degree twin whose rods share a pin, 30 mm apart along the crank."""
+    return Layout(
+        cylinders=(
+            Cylinder(phase=math.pi / 4, bank=-math.pi / 4, position=0.0, throw=1),
+            Cylinder(phase=-math.pi / 4, bank=math.pi / 4, position=0.03, throw=1, piston=small),
+        ),
+        **layout,
+    )
+
+
+@pytest.mark.parametrize("small", [None, OwnPiston(mass=0.2)], ids=["like", "unlike"])
+def test_two_rods_on_a_pin_have_one_counterweight_for_both(small):
+    """r (2 m_B + share (m_A1 + m_A2)), in the middle of the pin; pasted, it is the crank's own."""
+    scene = engine(shared_pin(small))
+    found = balance(scene, 0.5)
+    both = 2.0 * RECIPROCATING - (0.0 if small is None else 0.3)
+    assert found.per_throw == pytest.approx((0.05 * (2.0 * ROTATING + 0.5 * both),), rel=1e-14)
+    again = simulate(scene.with_(**{f"crank__{k}": v for k, v in found.crank.items()})).data
+    for axis, force in zip("xy", found.after.T, strict=True):
+        np.testing.assert_allclose(again[f"frame_force_{axis}"].values, force, rtol=0, atol=1e-8)
+    rocking = left(found, "rocking moment", 1.0)
+    assert rocking[1] == pytest.approx(rocking[0], rel=1e-9)  # none of a weight in the middle
+
+
+@pytest.mark.parametrize(
+    ("throws", "small", "rows"),
+    [
+        ("", "", ["every throw", "where cylinders 1 and 2 share a pin"]),
+        (", throw = 1", "", ["the throw"]),
+        (", throw = 1", "piston = { mass = '0.2 kg' }", ["the throw"]),
+        (
+            "",
+            "piston = { mass = '0.2 kg' }",
+            ["the throw of cylinder 1", "the throw of cylinder 2"],
+        ),
+    ],
+)
+def test_lines_are_those_of_throws(throws, small, rows, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    second = "{ phase = '-45 deg', bank = '45 deg'%s }"
+    if small:
+        second = second.replace(" }", f", {small} }}")
+    (tmp_path / "twin.toml").write_text(
+        "crank = { radius = '50 mm' }\n"
+        "rod = { length = '200 mm', mass = '0.8 kg', center_of_mass = '50 mm', inertia = 0.004 }\n"
+        "piston = { mass = '0.5 kg' }\nmotion = { speed = '200 rad/s' }\n"
+        "run = { until = '2 rev' }\n"
+        f"cylinder = [{{ phase = '45 deg', bank = '-45 deg'{throws} }}, {second % throws}]\n"
+    )
+    done = crankmbs_("balance", "twin.toml", "--no-figures")
+    assert done.exit_code == 0, done.output
+    found = re.findall(r"^  (?:opposite )?(\w.*\w|\w) {2,}(\S+) kg m$", done.stdout, re.MULTILINE)
+    assert [name for name, _ in found][: len(rows)] == rows
+    assert len(found) == len(rows) + (len(rows) == 2 and bool(small)) + 1
+
+
 @pytest.mark.parametrize(
     "speed", [SPEED, Oscillation(mean=SPEED, amplitude=30.0, order=2)], ids=["even", "uneven"]
 )

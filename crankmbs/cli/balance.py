@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import cmath
 import textwrap
+from itertools import combinations
 from typing import TYPE_CHECKING, Annotated
 
 from typer import Exit, Option, echo
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["balance"]
 
 _ERRORS = ["before", "num. error", "after", "num. error"]
+_ALIKE = 1e-9  # of the largest counterweight, and rad: so near are two that are alike
 
 
 def balance(
@@ -135,10 +138,7 @@ def _report(name: str, weights: Balance) -> str:
             "",
             "counterweight, mass times radius, for the rotating mass and "
             f"{100.0 * weights.share:g} % of the reciprocating mass:",
-            *(
-                f"  {f'opposite {throw}':41}  {digits(moment)} kg m"
-                for throw, moment in _throws(weights)
-            ),
+            *(f"  {where:41}  {digits(moment)} kg m" for where, moment in _throws(weights)),
             f"  {_of_crank(weights):41}  {digits(abs(weights.of_crank))} kg m",
             "",
             table([f"over the {measured_span(weights.result).kind}", "order", *_ERRORS], rows),
@@ -155,11 +155,43 @@ def _of_crank(weights: Balance) -> str:
 
 
 def _throws(weights: Balance) -> list[tuple[str, float]]:
-    """Which throws a counterweight stands opposite, and how much it is [kg m]."""
-    moments = weights.per_throw
-    if weights.result.scene.unlike:
-        return [(f"the throw of cylinder {k}", each) for k, each in enumerate(moments, start=1)]
-    return [("every throw", moments[0])]
+    """Where counterweights stand, and how much each is [kg m]."""
+    from crankmbs.scene.bearings import throw_numbers
+
+    scene, moments = weights.result.scene, weights.per_throw
+    numbers = throw_numbers(scene)
+    if len(moments) == 1:
+        rows = [("opposite the throw", moments[0])]
+    elif max(moments) - min(moments) <= _ALIKE * max(moments):
+        rows = [("opposite every throw", moments[0])]
+    elif scene.cylinders[0].throw is None:
+        rows = [
+            (f"opposite the throw of cylinder {k}", moments[throw])
+            for k, throw in enumerate(numbers, start=1)
+        ]
+    else:
+        rows = [(f"opposite throw {k}", each) for k, each in enumerate(moments, start=1)]
+    return rows + [
+        (
+            f"where cylinders {i + 1} and {j + 1} share a pin",
+            moments[numbers[i]] + moments[numbers[j]],
+        )
+        for i, j in _may_share(scene)
+    ]
+
+
+def _may_share(scene: Scene) -> list[tuple[int, int]]:
+    """Cylinders, counted from 0, of two banks whose throws stand at one angle, where neither their
+    `throw` nor journals between them say whether their rods are on one pin."""
+    cylinders = scene.cylinders
+    if scene.throws is not None or cylinders[0].throw is not None:
+        return []
+    turns = [cmath.exp(1j * (c.phase + c.bank)) for c in cylinders]
+    return [
+        (i, j)
+        for i, j in combinations(range(len(cylinders)), 2)
+        if abs(turns[i] - turns[j]) <= _ALIKE and cylinders[i].bank != cylinders[j].bank
+    ]
 
 
 def _csv(weights: Balance) -> str:

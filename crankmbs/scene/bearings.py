@@ -22,7 +22,7 @@ from crankmbs.scene.schema import Float, part, si
 if TYPE_CHECKING:
     from crankmbs.scene.scene import Scene
 
-__all__ = ["Bearings", "Shell", "Throws", "throws_of"]
+__all__ = ["Bearings", "Shell", "Throws", "throw_numbers", "throws_of"]
 
 _SAME = 1e-9  # rad: throws nearer than this stand at one angle
 _CLOSES = 1e-6  # of the largest unbalance: so near is the sum of all to the crank's
@@ -93,7 +93,7 @@ def throws_of(scene: Scene) -> Throws | None:
     >>> throws_of(scene).rods
     ((0.5,), (0.5,))
     """
-    bearings, numbers = scene.bearings, _numbers(scene)
+    bearings, numbers = scene.bearings, throw_numbers(scene)
     if bearings is None:
         return None
     count = max(numbers) + 1
@@ -122,8 +122,16 @@ def throws_of(scene: Scene) -> Throws | None:
     )
 
 
-def _numbers(scene: Scene) -> tuple[int, ...]:
-    """The throw of each cylinder, from 0; where none is given, one for each along the crank."""
+def throw_numbers(scene: Scene) -> tuple[int, ...]:
+    """The throw of each cylinder, from 0; where none is given, one for each along the crank.
+
+    Raises
+    ------
+    InputError : throws that contradict one another
+
+    >>> throw_numbers(load_scene("v_twin"))
+    (0, 1)
+    """
     cylinders = scene.cylinders
     throws = [cylinder.throw for cylinder in cylinders]
     if None in throws:
