@@ -139,7 +139,7 @@ def _report(name: str, weights: Balance) -> str:
             "counterweight, mass times radius, for the rotating mass and "
             f"{100.0 * weights.share:g} % of the reciprocating mass:",
             *(f"  {where:41}  {digits(moment)} kg m" for where, moment in _throws(weights)),
-            f"  {_of_crank(weights):41}  {digits(abs(weights.of_crank))} kg m",
+            *(f"  {whose:41}  {digits(abs(moment))} kg m" for whose, moment in _present(weights)),
             "",
             table([f"over the {measured_span(weights.result).kind}", "order", *_ERRORS], rows),
             f"moving parts on the frame, engine's X and Y{about}",
@@ -147,11 +147,23 @@ def _report(name: str, weights: Balance) -> str:
     )
 
 
-def _of_crank(weights: Balance) -> str:
-    """Where the part for the crank's own unbalance stands; a counterweight that it has counts."""
+def _present(weights: Balance) -> list[tuple[str, float]]:
+    """What the crank itself adds, as it is [kg m]; a counterweight that it has counts."""
+    bearings = weights.result.scene.bearings
+    if bearings is not None and bearings.throw_unbalance is not None:
+        present = bearings.throw_unbalance
+        if len(set(present)) == 1:
+            return [
+                (f"{_less(present[0])} {'every' if len(present) > 1 else 'the'} throw", present[0])
+            ]
+        return [(f"{_less(each)} throw {k}", each) for k, each in enumerate(present, start=1)]
     if weights.of_crank < 0.0:
-        return "less the counterweight that the crank has"
-    return "opposite the crank's own centre of mass"
+        return [("less the counterweight that the crank has", weights.of_crank)]
+    return [("opposite the crank's own centre of mass", weights.of_crank)]
+
+
+def _less(unbalance: float) -> str:
+    return "less the counterweight of" if unbalance < 0.0 else "and for the unbalance of"
 
 
 def _throws(weights: Balance) -> list[tuple[str, float]]:

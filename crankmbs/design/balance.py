@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
@@ -47,7 +48,8 @@ class Balance:
 
     share : of the reciprocating mass
     per_throw : opposite each throw, in the order of `crankmbs.scene.bearings.throw_numbers`, for
-        the masses of its rods at the crank pin and the share of their reciprocating masses
+        the masses of its rods at the crank pin and the share of their reciprocating masses; in all,
+        also what a throw_unbalance of the scene's bearings has of it
     of_crank : opposite the crank's centre of mass; negative: as much less of what it has
     remaining : orders 1 and 2 of the force and, where cylinders have places, rocking moment
     result : the run they are taken from
@@ -106,9 +108,10 @@ def balance(scene: Scene, share: float = 0.5, *, cost_cap: float = 10.0) -> Bala
     per_throw = sum r (m_B + share m_A),  m_A = m_piston + m_rod a / l,  m_B = m_rod (l - a) / l
 
     summed over the rods of a throw, opposite it, in its plane, and m c opposite the crank's centre
-    of mass. What the frame feels before is `frame_force` and `rocking_moment` of a run over its
-    last whole cycle; after, with what the counterweights add to it in the same motion, but for
-    their moment of inertia, which at a prescribed speed is exact.
+    of mass, or in place of that what takes the unbalance of each throw of [bearings] away. What the
+    frame feels before is `frame_force` and `rocking_moment` of a run over its last whole cycle;
+    after, with what the counterweights add to it in the same motion, but for their moment of
+    inertia, which at a prescribed speed is exact.
 
     Parameters
     ----------
@@ -174,13 +177,23 @@ class _Weights:
         theta, omega, alpha = (variables[name] for name in names)
         force, rocking = np.zeros((len(theta), 2)), np.zeros((len(theta), 2))
         throws = zip(self.per_throw, *_places(self.scene), strict=True)
-        for moment, angle, lever in [*throws, (self.of_crank, 0.0, 0.0)]:
+        for moment, angle, lever in [*throws, *self._of_crank()]:
             cosine, sine = np.cos(theta + angle), np.sin(theta + angle)
             x = -moment * (cosine * omega**2 + sine * alpha)
             y = -moment * (sine * omega**2 - cosine * alpha)
             force += np.stack([x, y], axis=1)
             rocking += lever * np.stack([-y, x], axis=1)
         return {"frame_force": force, "rocking_moment": rocking}
+
+    def _of_crank(self) -> Iterator[tuple[float, float, float]]:
+        """What takes away the unbalances that the crank has, at its throws or in its middle: size
+        [kg m], angle [rad] and place along the crank [m]."""
+        throws = self.scene.throws
+        if throws is None:
+            yield self.of_crank, 0.0, 0.0
+            return
+        for unbalance, lever in zip(throws.unbalances, throws.levers, strict=True):
+            yield abs(unbalance), cmath.phase(unbalance), lever
 
 
 def _remaining(result: Result, weights: _Weights) -> Iterator[Remaining]:

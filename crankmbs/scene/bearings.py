@@ -69,12 +69,14 @@ class Throws(NamedTuple):
     rods : for each journal the share of every cylinder's load that it carries
     throws : for each journal the share of what belongs to every throw itself
     unbalances : of each throw, complex [kg m], in the engine's frame at crank angle 0
+    levers : how far each throw stands beyond the middle of the crank [m]; 0 of one without a place
     """
 
     numbers: tuple[int, ...]
     rods: tuple[tuple[float, ...], ...]
     throws: tuple[tuple[float, ...], ...]
     unbalances: tuple[complex, ...]
+    levers: tuple[float, ...]
 
     @property
     def shared(self) -> bool:
@@ -119,6 +121,7 @@ def throws_of(scene: Scene) -> Throws | None:
         _shares(journals, numbers, along),
         _shares(journals, range(count), middles),
         _unbalances(scene, bearings, numbers, count),
+        tuple(place - 0.5 * (min(along) + max(along)) for place in middles),
     )
 
 

@@ -46,10 +46,10 @@ export class Engine {
    *
    * quick : diagrams of polytropes are fitted to what a screen shows */
   train(scene, quick = false) {
-    const { crank, cylinders, levers, gravity, friction, loads, fuel, period } = scene;
+    const { crank, cylinders, levers, throws, gravity, friction, loads, fuel, period } = scene;
     const gears = this.gears(scene);
     const [{ shape, piston }] = gears;
-    const machine = { gears, shape, piston, crank, cylinders, levers };
+    const machine = { gears, shape, piston, crank, cylinders, levers, throws };
     const pressures = quick ? this.pressures.quick : this.pressures.fine;
     const share = piston.crank_end_share;
     const { pressure, combustion, crank_end } =
