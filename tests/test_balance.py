@@ -232,6 +232,59 @@ def test_counterweights_beside_the_reference_line_have_no_centre_of_mass(tmp_pat
     assert list(tmp_path.iterdir()) == []
 
 
+IN_LINE = """title = "four in line"  # as it comes
+[crank]
+radius = "40 mm"
+mass = "12 kg"
+[rod]
+length = "160 mm"
+mass = "0.6 kg"
+center_of_mass = "45 mm"
+inertia = "two-mass"
+[piston]
+mass = "0.5 kg"
+[motion]
+speed = "3000 rpm"
+[run]
+until = "2 rev"
+[layout]
+firing_order = [1, 3, 4, 2]
+spacing = "90 mm"
+"""
+JOURNALS = '[bearings]\nmain_journal = { diameter = "60 mm", width = "28 mm" }\n'
+
+
+def test_counterweights_on_throws_are_written_where_journals_hold_them(tmp_path, monkeypatch):
+    """U omega^2 of each throw is halved by the journals beside it: in the middle those of throws 2
+    and 3, at one angle, add up; beside it those of opposite throws cancel."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "four.toml").write_text(IN_LINE + JOURNALS)
+    done = crankmbs_("balance", "four.toml", "--share", "0%", "-o", "mine.toml", "--no-figures")
+    assert done.exit_code == 0, done.output
+    weights = ", ".join(4 * ['"-17.25 kg mm"'])
+    line = f"throw_unbalance = [{weights}]"
+    assert f"[bearings]\n{line}\n" in done.stdout
+    text = (tmp_path / "mine.toml").read_text()
+    assert text.replace(
+        f"{line}    # with counterweights for 0 % of the reciprocating mass\n", ""
+    ) == (IN_LINE + JOURNALS)
+    runs = [simulate(load_scene(name)).measures().joints for name in ("four.toml", "mine.toml")]
+    peaks = [[j.peak.value for j in each if j.joint == "main journal"] for each in runs]
+    pull = 0.01725 * (100.0 * math.pi) ** 2
+    less = np.array([0.5, 0.0, 1.0, 0.0, 0.5]) * pull
+    assert peaks[1] == pytest.approx(np.array(peaks[0]) - less, rel=1e-9)
+
+
+def test_counterweights_that_cancel_on_a_crank_without_journals_are_not_claimed(
+    tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "four.toml").write_text(IN_LINE)
+    done = crankmbs_("balance", "four.toml", "-o", "mine.toml", "--no-figures")
+    assert "cancel on the crank as a whole" in done.stdout
+    assert (tmp_path / "mine.toml").read_text() == IN_LINE
+
+
 def test_on_the_command_line(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     done = crankmbs_("balance", "yi_diesel", "--share", "40 %", "--out", "here")

@@ -26,6 +26,10 @@ __all__ = ["balance"]
 
 _ERRORS = ["before", "num. error", "after", "num. error"]
 _ALIKE = 1e-9  # of the largest counterweight, and rad: so near are two that are alike
+_CANCEL = (
+    "the counterweights of all throws cancel on the crank as a whole, so that the scene stays as\n"
+    "it is; with [bearings] and places along the crank they are written as throw_unbalance"
+)
 
 
 def balance(
@@ -70,21 +74,24 @@ def balance(
         raise Exit(3)
 
 
-def _pasted(scene: Scene, weights: Balance) -> dict[str, str]:
-    """What [crank] is with the counterweights; its inertia where it would be too small for them."""
-    crank = weights.crank
-    values = {
-        "mass": f"{crank['mass']:.7g} kg",
-        "center_of_mass": f"{crank['center_of_mass'] * 1e3:.7g} mm",
-    }
+def _pasted(scene: Scene, weights: Balance) -> dict[str, str | tuple[str, ...]]:
+    """What crank and throws are with the counterweights, as `Scene.with_` names it; the inertia
+    where it would be too small for them."""
+    crank, throws = weights.crank, weights.throw_unbalance
+    values: dict[str, str | tuple[str, ...]] = {}
+    if crank["center_of_mass"] or scene.crank.center_of_mass:
+        values["crank__mass"] = f"{crank['mass']:.7g} kg"
+        values["crank__center_of_mass"] = f"{crank['center_of_mass'] * 1e3:.7g} mm"
     least = crank["mass"] * crank["center_of_mass"] ** 2
     if scene.crank.inertia is not None and scene.crank.inertia < least:
-        values["inertia"] = f"{digits(scene.crank.inertia + least)} kg m^2"
+        values["crank__inertia"] = f"{digits(scene.crank.inertia + least)} kg m^2"
+    if throws is not None:
+        values["bearings__throw_unbalance"] = tuple(f"{1e3 * u:.9g} kg mm" for u in throws)
     return values
 
 
 def _crank(scene: Scene, weights: Balance, cost_cap: float) -> list[str]:
-    """The crank to paste into the scene, and the bearing loads of a run with it."""
+    """Crank and throws to paste into the scene, and the bearing loads of a run with them."""
     from crankmbs.measures import measure
     from crankmbs.simulate import simulate
 
@@ -92,17 +99,17 @@ def _crank(scene: Scene, weights: Balance, cost_cap: float) -> list[str]:
         values = _pasted(scene, weights)
     except InputError as error:
         return [textwrap.fill(str(error), 100)]
-    if weights.crank["center_of_mass"] == scene.crank.center_of_mass == 0.0:
-        return ["the counterweights of all throws cancel on the crank as a whole: [crank] stays"]
-    after = simulate(
-        scene.with_(**{f"crank__{key}": value for key, value in values.items()}), cost_cap=cost_cap
-    )
-    return [
-        loads_table(measure(weights.result), measure(after), "after"),
-        "",
-        "[crank]",
-        *(f'{key} = "{value}"' for key, value in values.items()),
-    ]
+    if not values:
+        return [_CANCEL]
+    after = simulate(scene.with_(**values), cost_cap=cost_cap)
+    lines, before = [loads_table(measure(weights.result), measure(after), "after")], ""
+    for name, value in values.items():
+        part, _, key = name.partition("__")
+        lines += [] if part == before else ["", f"[{part}]"]
+        several = ", ".join(f'"{each}"' for each in value)
+        lines.append(f'{key} = "{value}"' if isinstance(value, str) else f"{key} = [{several}]")
+        before = part
+    return lines
 
 
 def _share(text: str) -> float:

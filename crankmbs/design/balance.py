@@ -101,6 +101,18 @@ class Balance:
         mass = scene.crank.mass or abs(float(moment.real)) / radius
         return {"mass": mass, "center_of_mass": float(moment.real) / mass if mass else 0.0}
 
+    @property
+    def throw_unbalance(self) -> tuple[float, ...] | None:
+        """throw_unbalance [kg m] of the scene's bearings with the counterweights; None where no
+        journals hold the throws, so that the crank is one body.
+
+        >>> balance(load_scene("propeller"), 0.5).throw_unbalance is None
+        True
+        """
+        if self.result.scene.throws is None:
+            return None
+        return tuple(-moment for moment in self.per_throw)
+
 
 def balance(scene: Scene, share: float = 0.5, *, cost_cap: float = 10.0) -> Balance:
     """Balance a machine's rotating mass and a share of its reciprocating mass.
