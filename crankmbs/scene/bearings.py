@@ -70,6 +70,7 @@ class Throws(NamedTuple):
     throws : for each journal the share of what belongs to every throw itself
     unbalances : of each throw, complex [kg m], in the engine's frame at crank angle 0
     levers : how far each throw stands beyond the middle of the crank [m]; 0 of one without a place
+    journals : their places along the crank [m]; none where one throw is held by halves
     """
 
     numbers: tuple[int, ...]
@@ -77,6 +78,7 @@ class Throws(NamedTuple):
     throws: tuple[tuple[float, ...], ...]
     unbalances: tuple[complex, ...]
     levers: tuple[float, ...]
+    journals: tuple[float, ...]
 
     @property
     def shared(self) -> bool:
@@ -122,6 +124,7 @@ def throws_of(scene: Scene) -> Throws | None:
         _shares(journals, range(count), middles),
         _unbalances(scene, bearings, numbers, count),
         tuple(place - 0.5 * (min(along) + max(along)) for place in middles),
+        tuple(journals),
     )
 
 
