@@ -176,7 +176,8 @@ def test_a_sweep_has_the_journals_of_every_case():
         (
             DIESEL,
             {"bearings__journal_positions": ("0 mm", "100 mm")},
-            "bearings__journal_positions: one more than throws is needed, 5; 2 came",
+            "bearings__journal_positions: one more than throws is needed, 5; 2 came; rods that "
+            "share a pin have the same throw; split pins with no journal between them cannot be",
         ),
         (
             DIESEL,
@@ -196,7 +197,7 @@ def test_a_sweep_has_the_journals_of_every_case():
         (
             VEE,
             {"layout__cylinders__2__phase": "290 deg"},
-            "cylinders 1 and 2 of throw 1 have 330 and 320 degrees",
+            "cylinders 1 and 2 of throw 1 have 330 and 320 degrees; split pins with no journal",
         ),
         (
             VEE,

@@ -27,6 +27,12 @@ __all__ = ["Bearings", "Shell", "Throws", "throw_numbers", "throws_of"]
 _SAME = 1e-9  # rad: throws nearer than this stand at one angle
 _CLOSES = 1e-6  # of the largest unbalance: so near is the sum of all to the crank's
 
+_SPLIT = (
+    "split pins with no journal between them cannot be described: without throw, main_journal and "
+    "journal_positions each is a throw of its own, and the loads of crank pins and of the main "
+    "bearing as a whole are right, but not its split among journals"
+)
+
 
 @part
 class Shell:
@@ -162,7 +168,7 @@ def throw_numbers(scene: Scene) -> tuple[int, ...]:
             raise InputError(
                 f"layout.cylinders[{k + 1}].throw: cylinders of one throw share a pin, so phase + "
                 f"bank is the same; cylinders {first + 1} and {k + 1} of throw {number + 1} have "
-                f"{at[0]:.6g} and {at[1]:.6g} degrees"
+                f"{at[0]:.6g} and {at[1]:.6g} degrees; {_SPLIT}"
             )
         radii = [scene.running_gear[i].radius for i in (first, k)]
         if radii[0] != radii[1]:
@@ -192,7 +198,7 @@ def _journals(bearings: Bearings, throws: list[float]) -> list[float]:
     if len(positions) != len(throws) + 1:
         raise InputError(
             f"bearings.journal_positions: one more than throws is needed, {len(throws) + 1}; "
-            f"{len(positions)} came"
+            f"{len(positions)} came; rods that share a pin have the same throw; {_SPLIT}"
         )
     sign = 1.0 if positions[-1] > positions[0] else -1.0
     for k, place in enumerate(throws):
