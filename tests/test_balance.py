@@ -112,6 +112,63 @@ def test_unlike_cylinders_each_have_their_own():
     assert found.crank["center_of_mass"] * found.crank["mass"] == pytest.approx(own[1] - own[0])
 
 
+def shared_pin(small=None, **layout):
+    """A 90 degree twin whose rods share a pin, 30 mm apart along the crank."""
+    return Layout(
+        cylinders=(
+            Cylinder(phase=math.pi / 4, bank=-math.pi / 4, position=0.0, throw=1),
+            Cylinder(phase=-math.pi / 4, bank=math.pi / 4, position=0.03, throw=1, piston=small),
+        ),
+        **layout,
+    )
+
+
+@pytest.mark.parametrize("small", [None, OwnPiston(mass=0.2)], ids=["like", "unlike"])
+def test_two_rods_on_a_pin_have_one_counterweight_for_both(small):
+    """r (2 m_B + share (m_A1 + m_A2)), in the middle of the pin; pasted, it is the crank's own."""
+    scene = engine(shared_pin(small))
+    found = balance(scene, 0.5)
+    both = 2.0 * RECIPROCATING - (0.0 if small is None else 0.3)
+    assert found.per_throw == pytest.approx((0.05 * (2.0 * ROTATING + 0.5 * both),), rel=1e-14)
+    again = simulate(scene.with_(**{f"crank__{k}": v for k, v in found.crank.items()})).data
+    for axis, force in zip("xy", found.after.T, strict=True):
+        np.testing.assert_allclose(again[f"frame_force_{axis}"].values, force, rtol=0, atol=1e-8)
+    rocking = left(found, "rocking moment", 1.0)
+    assert rocking[1] == pytest.approx(rocking[0], rel=1e-9)  # none of a weight in the middle
+
+
+@pytest.mark.parametrize(
+    ("throws", "small", "rows"),
+    [
+        ("", "", ["every throw", "where cylinders 1 and 2 share a pin"]),
+        (", throw = 1", "", ["the throw"]),
+        (", throw = 1", "piston = { mass = '0.2 kg' }", ["the throw"]),
+        (
+            "",
+            "piston = { mass = '0.2 kg' }",
+            ["the throw of cylinder 1", "the throw of cylinder 2"],
+        ),
+    ],
+)
+def test_lines_are_those_of_throws(throws, small, rows, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    second = "{ phase = '-45 deg', bank = '45 deg'%s }"
+    if small:
+        second = second.replace(" }", f", {small} }}")
+    (tmp_path / "twin.toml").write_text(
+        "crank = { radius = '50 mm' }\n"
+        "rod = { length = '200 mm', mass = '0.8 kg', center_of_mass = '50 mm', inertia = 0.004 }\n"
+        "piston = { mass = '0.5 kg' }\nmotion = { speed = '200 rad/s' }\n"
+        "run = { until = '2 rev' }\n"
+        f"cylinder = [{{ phase = '45 deg', bank = '-45 deg'{throws} }}, {second % throws}]\n"
+    )
+    done = crankmbs_("balance", "twin.toml", "--no-figures")
+    assert done.exit_code == 0, done.output
+    found = re.findall(r"^  (?:opposite )?(\w.*\w|\w) {2,}(\S+) kg m$", done.stdout, re.MULTILINE)
+    assert [name for name, _ in found][: len(rows)] == rows
+    assert len(found) == len(rows) + (len(rows) == 2 and bool(small)) + 1
+
+
 @pytest.mark.parametrize(
     "speed", [SPEED, Oscillation(mean=SPEED, amplitude=30.0, order=2)], ids=["even", "uneven"]
 )
@@ -173,6 +230,59 @@ def test_counterweights_beside_the_reference_line_have_no_centre_of_mass(tmp_pat
     assert "counterweight, mass times radius" in done.stdout
     assert "do not lie along the crank's reference line" in done.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+IN_LINE = """title = "four in line"  # as it comes
+[crank]
+radius = "40 mm"
+mass = "12 kg"
+[rod]
+length = "160 mm"
+mass = "0.6 kg"
+center_of_mass = "45 mm"
+inertia = "two-mass"
+[piston]
+mass = "0.5 kg"
+[motion]
+speed = "3000 rpm"
+[run]
+until = "2 rev"
+[layout]
+firing_order = [1, 3, 4, 2]
+spacing = "90 mm"
+"""
+JOURNALS = '[bearings]\nmain_journal = { diameter = "60 mm", width = "28 mm" }\n'
+
+
+def test_counterweights_on_throws_are_written_where_journals_hold_them(tmp_path, monkeypatch):
+    """U omega^2 of each throw is halved by the journals beside it: in the middle those of throws 2
+    and 3, at one angle, add up; beside it those of opposite throws cancel."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "four.toml").write_text(IN_LINE + JOURNALS)
+    done = crankmbs_("balance", "four.toml", "--share", "0%", "-o", "mine.toml", "--no-figures")
+    assert done.exit_code == 0, done.output
+    weights = ", ".join(4 * ['"-17.25 kg mm"'])
+    line = f"throw_unbalance = [{weights}]"
+    assert f"[bearings]\n{line}\n" in done.stdout
+    text = (tmp_path / "mine.toml").read_text()
+    assert text.replace(
+        f"{line}    # with counterweights for 0 % of the reciprocating mass\n", ""
+    ) == (IN_LINE + JOURNALS)
+    runs = [simulate(load_scene(name)).measures().joints for name in ("four.toml", "mine.toml")]
+    peaks = [[j.peak.value for j in each if j.joint == "main journal"] for each in runs]
+    pull = 0.01725 * (100.0 * math.pi) ** 2
+    less = np.array([0.5, 0.0, 1.0, 0.0, 0.5]) * pull
+    assert peaks[1] == pytest.approx(np.array(peaks[0]) - less, rel=1e-9)
+
+
+def test_counterweights_that_cancel_on_a_crank_without_journals_are_not_claimed(
+    tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "four.toml").write_text(IN_LINE)
+    done = crankmbs_("balance", "four.toml", "-o", "mine.toml", "--no-figures")
+    assert "cancel on the crank as a whole" in done.stdout
+    assert (tmp_path / "mine.toml").read_text() == IN_LINE
 
 
 def test_on_the_command_line(tmp_path, monkeypatch):

@@ -11,8 +11,10 @@ from crankmbs import (
     Gravity,
     InputError,
     Layout,
+    Motion,
     Shell,
     at_angle,
+    balance,
     confirm,
     load_scene,
     simulate,
@@ -174,7 +176,8 @@ def test_a_sweep_has_the_journals_of_every_case():
         (
             DIESEL,
             {"bearings__journal_positions": ("0 mm", "100 mm")},
-            "bearings__journal_positions: one more than throws is needed, 5; 2 came",
+            "bearings__journal_positions: one more than throws is needed, 5; 2 came; rods that "
+            "share a pin have the same throw; split pins with no journal between them cannot be",
         ),
         (
             DIESEL,
@@ -194,7 +197,7 @@ def test_a_sweep_has_the_journals_of_every_case():
         (
             VEE,
             {"layout__cylinders__2__phase": "290 deg"},
-            "cylinders 1 and 2 of throw 1 have 330 and 320 degrees",
+            "cylinders 1 and 2 of throw 1 have 330 and 320 degrees; split pins with no journal",
         ),
         (
             VEE,
@@ -219,6 +222,75 @@ def test_what_contradicts_itself_is_refused_by_name(scene, changes, sentence):
     with pytest.raises(InputError) as refused:
         scene.with_(**changes)
     assert sentence in str(refused.value)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_the_frame_rocks_as_journals_walls_and_heads_push_it(seed):
+    """The moment of all that touches the frame, each at its place along the crank."""
+    scene = random_bearings(random_scene(seed), seed)
+    if scene.bearings.journal_positions is None:
+        scene = dataclasses.replace(
+            scene, bearings=Bearings(journal_positions=(-9.0, 9.0), throw_unbalance=None)
+        )
+    motion = np.random.default_rng([37, seed]).uniform(
+        [-13.0, -300.0, -2e4], [13.0, 300.0, 2e4], (5, 3)
+    )
+    found = reactions(crank_train(scene), *motion.T)
+    places = np.array([c.position for c in scene.cylinders])
+    middle = 0.5 * (places.min() + places.max())
+    banks = np.array([c.bank for c in scene.cylinders])
+    pushed = (found["gas_force"] - 1j * found["side_force"]) * np.exp(1j * banks)
+    journals = found["main_journal_force_x"] + 1j * found["main_journal_force_y"]
+    at = np.array(scene.bearings.journal_positions) - middle
+    moment = pushed @ (places - middle) - journals @ at
+    size = 1e-12 * max(np.abs(pushed).max(), np.abs(journals).max()) * np.abs(at).max()
+    np.testing.assert_allclose(found["rocking_moment_x"], -moment.imag, rtol=0, atol=size)
+    np.testing.assert_allclose(found["rocking_moment_y"], moment.real, rtol=0, atol=size)
+
+
+COUNTERWEIGHT = 0.02  # kg m
+
+
+@pytest.mark.parametrize("formulation", ["kinetostatic", "multibody"])
+def test_counterweights_of_throws_are_a_couple_on_the_frame(formulation):
+    """sqrt(3) d U omega^2 in all directions alike: throws 120 degrees and d apart."""
+    plain = load_scene("grega_lecture").with_(
+        layout=Layout(firing_order=(1, 3, 2), spacing=0.1),
+        bearings=Bearings(),
+        motion__speed=200.0,
+        run__until="2 rev",
+    )
+    added = plain.with_(bearings__throw_unbalance=(-COUNTERWEIGHT,) * 3)
+    runs = [simulate(scene, formulation=formulation).data for scene in (plain, added)]
+    moments = [each.rocking_moment_x.values + 1j * each.rocking_moment_y.values for each in runs]
+    couple = np.sqrt(3.0) * 0.1 * COUNTERWEIGHT * 200.0**2
+    assert np.abs(moments[1] - moments[0]) == pytest.approx(couple, rel=1e-7)
+    at_zero = runs[1].crank_angle.values == 0.0
+    assert (moments[1] - moments[0])[at_zero].imag > 0.0  # throw 1, ahead of the middle, pulls down
+
+
+def test_balance_counts_what_the_throws_have():
+    """Before less by the couple of what is there; after the same whatever was there."""
+    plain = DIESEL.with_(layout=Layout(firing_order=(1, 3, 2), spacing=0.1))
+    found = [
+        balance(plain.with_(bearings__throw_unbalance=size and (-size,) * 3))
+        for size in (None, COUNTERWEIGHT)
+    ]
+    before, after = (
+        [
+            next(
+                getattr(row, side).value
+                for row in each.remaining
+                if (row.quantity, row.direction, row.order) == ("rocking moment", "largest", 1.0)
+            )
+            for each in found
+        ]
+        for side in ("before", "after")
+    )
+    speed = found[0].result.data.crank_speed.values.mean()
+    couple = np.sqrt(3.0) * 0.1 * COUNTERWEIGHT * speed**2
+    assert before[0] - before[1] == pytest.approx(couple, rel=0.01)  # the speed is not even
+    assert after[1] == pytest.approx(after[0], rel=1e-6)
 
 
 def test_two_throws_at_one_place_are_asked_for_their_pin():
@@ -290,4 +362,49 @@ def test_journals_of_one_curve_are_drawn_once_and_every_panel_names_its_own():
     pins = ["cylinders 1, 2, 3, 4"]
     assert names == [journals, journals, pins, pins]
     assert not figure.legends
-    assert "crank angle [deg] of main journal 1" in figure.get_supxlabel().replace("\n", " ")
+    assert "crank angle [deg], along main journal 1" in figure.get_supxlabel().replace("\n", " ")
+
+
+def test_angles_and_names_in_the_figure_are_those_of_the_table():
+    """Of a V6 whose three pins peak at one cycle angle of their own, and at three crank angles."""
+    given = ((0, -30, 0), (300, 30, 32), (480, -30, 108), (60, 30, 140), (240, -30, 216))
+    places = [*given, (540, 30, 248)]
+    cylinders = tuple(
+        Cylinder(phase=f"{p} deg", bank=f"{b} deg", position=f"{z} mm", throw=k // 2 + 1)
+        for k, (p, b, z) in enumerate(places)
+    )
+    scene = FOUR.with_(layout=Layout(cylinders=cylinders), bearings=Bearings())
+    scene = dataclasses.replace(
+        scene, start=None, torque=(), motion=Motion(speed=300.0), gravity=None
+    )
+    result = simulate(scene)
+    peaks = {(j.joint, j.number): j for j in measure(result).joints}
+    shell, journal, _, pin = result.plot("bearings").axes
+    for ax in (shell, journal):
+        names = [text.get_text() for text in ax.get_legend().texts]
+        assert names == [f"main journal {k}" for k in range(1, 5)]
+        (label,) = [t.get_text().strip() for t in ax.texts if "peak" in t.get_text()]
+        number, angle = label.split(": peak ")
+        largest = max(
+            (j for (joint, _), j in peaks.items() if joint == "main journal"),
+            key=lambda j: j.peak.value,
+        )
+        assert peaks["main journal", int(number)].peak.value == pytest.approx(
+            largest.peak.value, rel=1e-6
+        )
+        at = np.degrees(peaks["main journal", int(number)].crank_angle) % 720.0
+        assert float(angle) == pytest.approx(at, abs=1.0)
+    assert [text.get_text() for text in pin.get_legend().texts] == ["shared pins 1, 2, 3"]
+    (label,) = [t.get_text().strip() for t in pin.texts if "peak" in t.get_text()]
+    at = np.degrees(peaks["shared pin", 1].crank_angle) % 720.0
+    assert float(label.removeprefix("peak ")) == pytest.approx(at, abs=1.0)
+
+
+def test_legends_of_four_journals_are_no_wider_than_their_panels():
+    figure = simulate(DIESEL.with_(layout=Layout(firing_order=(1, 3, 2), spacing=0.1))).plot(
+        "bearings"
+    )
+    assert len(figure.axes[0].get_legend().texts) == 4
+    figure.canvas.draw()
+    left, right = (ax.get_legend().get_window_extent() for ax in figure.axes[:2])
+    assert 0.0 <= left.x0 < left.x1 < right.x0 < right.x1 <= figure.bbox.x1

@@ -15,6 +15,7 @@ from crankmbs.measures import last_span, mean_speed, measure
 from crankmbs.mechanics.train import crank_train
 from crankmbs.page import exported, refusals
 from crankmbs.page.export import encoded
+from crankmbs.scene.bearings import Bearings
 from crankmbs.scene.parts import Gravity, Layout
 
 pytestmark = pytest.mark.slow
@@ -80,6 +81,29 @@ def test_a_firing_order_and_the_mean_speed_are_passed_on(page):
     assert "rocking_moment_x" in found["variables"]
     expected = mean_speed(result, last_span(result)).value
     assert found["measures"]["mean_speed"] == pytest.approx(expected, rel=1e-12)
+
+
+def test_unbalanced_throws_rock_as_in_python(page):
+    """Also those that stand aside from the middle, with what the crank weighs."""
+    places = ("0 mm", "100 mm", "260 mm", "300 mm")
+    cylinders = tuple(
+        replace(each, position=place)
+        for each, place in zip(load_scene("yi_diesel_free").cylinders, places, strict=True)
+    )
+    unbalances = ("-20 kg mm", "5 kg mm", "-10 kg mm", "-25 kg mm")
+    scene = settled("yi_diesel_free").with_(
+        layout=Layout(cylinders=cylinders),
+        gravity=Gravity(acceleration=300.0, angle=1.0),
+        crank__mass="20 kg",
+        crank__center_of_mass="-2 mm",
+        bearings=Bearings(throw_unbalance=unbalances),
+    )
+    result = simulate(scene, rtol=1e-12)
+    found = page.answer(scene, result.data["crank_angle"].values)
+    for axis in "xy":
+        rocks = result.data[f"rocking_moment_{axis}"].values
+        ours = np.ravel(found["variables"][f"rocking_moment_{axis}"])
+        np.testing.assert_allclose(ours, rocks, rtol=0.0, atol=1e-9 * np.abs(rocks).max())
 
 
 CACHED = """(text) => {

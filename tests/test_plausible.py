@@ -309,3 +309,38 @@ def test_every_number_is_named():
     worst = regassed(pressed(reroded(FOUR, center_of_mass=0.2), 10.0), ambient=1.0)
     named = [said.split(":")[0] for said in warnings(worst)]
     assert named == ["rod.center_of_mass", "gas.ambient", "gas"]
+
+
+IN_LINE = load_scene("yi_diesel_free")  # of a bore of 85.25 mm
+
+
+@pytest.mark.parametrize(("spacing", "said"), [(30.0, True), (85.0, True), (85.5, False)])
+def test_cylinders_in_line_do_not_overlap(spacing, said):
+    found = warnings(IN_LINE.with_(layout__spacing=spacing * 1e-3))
+    start = f"layout.spacing: cylinders 1 and 2 of one bank are {spacing:.4g} mm apart"
+    assert [sentence.startswith(start) for sentence in found] == [True] * said
+
+
+def test_cylinders_of_two_banks_may_stand_side_by_side():
+    pair = [
+        {"phase": 0.0, "bank": bank, "position": place} for bank, place in ((-0.5, 0), (0.5, 0.03))
+    ]
+    scene = load_scene("v_twin")
+    assert warnings(scene.with_(layout__cylinders=pair)) == ()
+    row = [{**each, "bank": 0.5} for each in pair]
+    (sentence,) = warnings(scene.with_(layout__cylinders=row))
+    assert sentence.startswith(
+        "layout.cylinders: position: cylinders 1 and 2 of one bank are 30 mm"
+    )
+
+
+@pytest.mark.parametrize(("width", "said"), [("60 mm", False), ("62 mm", True)])
+def test_shells_fit_between_the_middles_of_two_journals(width, said):
+    """100 mm apart: half of two journals of 39 mm and a big end."""
+    shells = Bearings(
+        main_journal=Shell(diameter="65 mm", width="39 mm"),
+        crank_pin=Shell(diameter="56 mm", width=width),
+    )
+    found = warnings(IN_LINE.with_(layout__spacing="100 mm", bearings=shells))
+    start = "bearings: main journals 1 and 2 are 100 mm apart, less than one journal"
+    assert [sentence.startswith(start) for sentence in found] == [True] * said

@@ -33,7 +33,7 @@ def test_a_copy_elsewhere_has_the_same_text_but_the_names_of_its_tables(name, tm
 
 def test_a_value_stands_in_place_with_its_unit_and_reason(tmp_path):
     path, target = SHIPPED["turning_moment"], tmp_path / "mine.toml"
-    values = {"inertia": "0.3 kg m^2", "mass": "2 kg"}
+    values = {"crank__inertia": "0.3 kg m^2", "crank__mass": "2 kg"}
     lines = edited_files(path, target, values, "for 1 %")["mine.toml"].decode().splitlines()
     source = path.read_text(encoding="utf-8").splitlines()
     assert 'inertia = "0.3 kg m^2"    # for 1 %' in lines
@@ -49,7 +49,9 @@ def test_in_the_same_folder_tables_are_shared(tmp_path):
         SHIPPED["yi_diesel"].read_text(encoding="utf-8").replace("pressure/yi_diesel.csv", "p.csv")
     )
     scene.write_text(text)
-    assert list(edited_files(scene, tmp_path / "b.toml", {"inertia": "1 kg m^2"})) == ["b.toml"]
+    assert list(edited_files(scene, tmp_path / "b.toml", {"crank__inertia": "1 kg m^2"})) == [
+        "b.toml"
+    ]
 
 
 def test_a_crank_that_stands_on_one_line_is_written_anew(tmp_path):
@@ -59,7 +61,7 @@ def test_a_crank_that_stands_on_one_line_is_written_anew(tmp_path):
     _, _, after = rest.partition("\n[")
     crank = 'crank = { radius = "46 mm", inertia = "0.1 kg m^2" }\n'
     scene.write_text(f"{before}{crank}\n[{after}")
-    files = edited_files(scene, Path(tmp_path / "b.toml"), {"inertia": "0.2 kg m^2"})
+    files = edited_files(scene, Path(tmp_path / "b.toml"), {"crank__inertia": "0.2 kg m^2"})
     (tmp_path / "b.toml").write_bytes(files["b.toml"])
     assert load_scene(tmp_path / "b.toml").crank.inertia == 0.2
 
@@ -68,7 +70,7 @@ START = {"angle": "0 deg", "speed": "3200 rpm"}
 
 
 def test_a_prescribed_speed_is_set_free_in_place(tmp_path):
-    path, crank = SHIPPED["grega_lecture"], {"inertia": "0.2 kg m^2"}
+    path, crank = SHIPPED["grega_lecture"], {"crank__inertia": "0.2 kg m^2"}
     target = tmp_path / "b.toml"
     files = edited_files(path, target, crank, "", start=START, torque="-90 N m")
     text = files["b.toml"].decode()
@@ -97,4 +99,4 @@ def test_a_speed_on_one_line_is_written_anew(tmp_path):
 
 def test_values_that_no_crank_has_are_refused(tmp_path):
     with pytest.raises(InputError, match="crank__inertia"):
-        edited_files(SHIPPED["coasting"], tmp_path / "b.toml", {"inertia": "-1 kg m^2"})
+        edited_files(SHIPPED["coasting"], tmp_path / "b.toml", {"crank__inertia": "-1 kg m^2"})

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import cmath
 import textwrap
+from itertools import combinations
 from typing import TYPE_CHECKING, Annotated
 
 from typer import Exit, Option, echo
@@ -23,6 +25,11 @@ if TYPE_CHECKING:
 __all__ = ["balance"]
 
 _ERRORS = ["before", "num. error", "after", "num. error"]
+_ALIKE = 1e-9  # of the largest counterweight, and rad: so near are two that are alike
+_CANCEL = (
+    "the counterweights of all throws cancel on the crank as a whole, so that the scene stays as\n"
+    "it is; with [bearings] and places along the crank they are written as throw_unbalance"
+)
 
 
 def balance(
@@ -67,21 +74,24 @@ def balance(
         raise Exit(3)
 
 
-def _pasted(scene: Scene, weights: Balance) -> dict[str, str]:
-    """What [crank] is with the counterweights; its inertia where it would be too small for them."""
-    crank = weights.crank
-    values = {
-        "mass": f"{crank['mass']:.7g} kg",
-        "center_of_mass": f"{crank['center_of_mass'] * 1e3:.7g} mm",
-    }
+def _pasted(scene: Scene, weights: Balance) -> dict[str, str | tuple[str, ...]]:
+    """What crank and throws are with the counterweights, as `Scene.with_` names it; the inertia
+    where it would be too small for them."""
+    crank, throws = weights.crank, weights.throw_unbalance
+    values: dict[str, str | tuple[str, ...]] = {}
+    if crank["center_of_mass"] or scene.crank.center_of_mass:
+        values["crank__mass"] = f"{crank['mass']:.7g} kg"
+        values["crank__center_of_mass"] = f"{crank['center_of_mass'] * 1e3:.7g} mm"
     least = crank["mass"] * crank["center_of_mass"] ** 2
     if scene.crank.inertia is not None and scene.crank.inertia < least:
-        values["inertia"] = f"{digits(scene.crank.inertia + least)} kg m^2"
+        values["crank__inertia"] = f"{digits(scene.crank.inertia + least)} kg m^2"
+    if throws is not None:
+        values["bearings__throw_unbalance"] = tuple(f"{1e3 * u:.9g} kg mm" for u in throws)
     return values
 
 
 def _crank(scene: Scene, weights: Balance, cost_cap: float) -> list[str]:
-    """The crank to paste into the scene, and the bearing loads of a run with it."""
+    """Crank and throws to paste into the scene, and the bearing loads of a run with them."""
     from crankmbs.measures import measure
     from crankmbs.simulate import simulate
 
@@ -89,17 +99,17 @@ def _crank(scene: Scene, weights: Balance, cost_cap: float) -> list[str]:
         values = _pasted(scene, weights)
     except InputError as error:
         return [textwrap.fill(str(error), 100)]
-    if weights.crank["center_of_mass"] == scene.crank.center_of_mass == 0.0:
-        return ["the counterweights of all throws cancel on the crank as a whole: [crank] stays"]
-    after = simulate(
-        scene.with_(**{f"crank__{key}": value for key, value in values.items()}), cost_cap=cost_cap
-    )
-    return [
-        loads_table(measure(weights.result), measure(after), "after"),
-        "",
-        "[crank]",
-        *(f'{key} = "{value}"' for key, value in values.items()),
-    ]
+    if not values:
+        return [_CANCEL]
+    after = simulate(scene.with_(**values), cost_cap=cost_cap)
+    lines, before = [loads_table(measure(weights.result), measure(after), "after")], ""
+    for name, value in values.items():
+        part, _, key = name.partition("__")
+        lines += [] if part == before else ["", f"[{part}]"]
+        several = ", ".join(f'"{each}"' for each in value)
+        lines.append(f'{key} = "{value}"' if isinstance(value, str) else f"{key} = [{several}]")
+        before = part
+    return lines
 
 
 def _share(text: str) -> float:
@@ -135,11 +145,8 @@ def _report(name: str, weights: Balance) -> str:
             "",
             "counterweight, mass times radius, for the rotating mass and "
             f"{100.0 * weights.share:g} % of the reciprocating mass:",
-            *(
-                f"  {f'opposite {throw}':41}  {digits(moment)} kg m"
-                for throw, moment in _throws(weights)
-            ),
-            f"  {_of_crank(weights):41}  {digits(abs(weights.of_crank))} kg m",
+            *(f"  {where:41}  {digits(moment)} kg m" for where, moment in _throws(weights)),
+            *(f"  {whose:41}  {digits(abs(moment))} kg m" for whose, moment in _present(weights)),
             "",
             table([f"over the {measured_span(weights.result).kind}", "order", *_ERRORS], rows),
             f"moving parts on the frame, engine's X and Y{about}",
@@ -147,19 +154,63 @@ def _report(name: str, weights: Balance) -> str:
     )
 
 
-def _of_crank(weights: Balance) -> str:
-    """Where the part for the crank's own unbalance stands; a counterweight that it has counts."""
+def _present(weights: Balance) -> list[tuple[str, float]]:
+    """What the crank itself adds, as it is [kg m]; a counterweight that it has counts."""
+    bearings = weights.result.scene.bearings
+    if bearings is not None and bearings.throw_unbalance is not None:
+        present = bearings.throw_unbalance
+        if len(set(present)) == 1:
+            return [
+                (f"{_less(present[0])} {'every' if len(present) > 1 else 'the'} throw", present[0])
+            ]
+        return [(f"{_less(each)} throw {k}", each) for k, each in enumerate(present, start=1)]
     if weights.of_crank < 0.0:
-        return "less the counterweight that the crank has"
-    return "opposite the crank's own centre of mass"
+        return [("less the counterweight that the crank has", weights.of_crank)]
+    return [("opposite the crank's own centre of mass", weights.of_crank)]
+
+
+def _less(unbalance: float) -> str:
+    return "less the counterweight of" if unbalance < 0.0 else "and for the unbalance of"
 
 
 def _throws(weights: Balance) -> list[tuple[str, float]]:
-    """Which throws a counterweight stands opposite, and how much it is [kg m]."""
-    moments = weights.per_throw
-    if weights.result.scene.unlike:
-        return [(f"the throw of cylinder {k}", each) for k, each in enumerate(moments, start=1)]
-    return [("every throw", moments[0])]
+    """Where counterweights stand, and how much each is [kg m]."""
+    from crankmbs.scene.bearings import throw_numbers
+
+    scene, moments = weights.result.scene, weights.per_throw
+    numbers = throw_numbers(scene)
+    if len(moments) == 1:
+        rows = [("opposite the throw", moments[0])]
+    elif max(moments) - min(moments) <= _ALIKE * max(moments):
+        rows = [("opposite every throw", moments[0])]
+    elif scene.cylinders[0].throw is None:
+        rows = [
+            (f"opposite the throw of cylinder {k}", moments[throw])
+            for k, throw in enumerate(numbers, start=1)
+        ]
+    else:
+        rows = [(f"opposite throw {k}", each) for k, each in enumerate(moments, start=1)]
+    return rows + [
+        (
+            f"where cylinders {i + 1} and {j + 1} share a pin",
+            moments[numbers[i]] + moments[numbers[j]],
+        )
+        for i, j in _may_share(scene)
+    ]
+
+
+def _may_share(scene: Scene) -> list[tuple[int, int]]:
+    """Cylinders, counted from 0, of two banks whose throws stand at one angle, where neither their
+    `throw` nor journals between them say whether their rods are on one pin."""
+    cylinders = scene.cylinders
+    if scene.throws is not None or cylinders[0].throw is not None:
+        return []
+    turns = [cmath.exp(1j * (c.phase + c.bank)) for c in cylinders]
+    return [
+        (i, j)
+        for i, j in combinations(range(len(cylinders)), 2)
+        if abs(turns[i] - turns[j]) <= _ALIKE and cylinders[i].bank != cylinders[j].bank
+    ]
 
 
 def _csv(weights: Balance) -> str:

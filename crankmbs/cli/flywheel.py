@@ -121,7 +121,7 @@ def _written(path: Path, scene: Scene, wheel: Flywheel, file: Path) -> tuple[Pat
     settled = wheel.result.scene
     assert settled.start is not None
     torque = _balance(scene, wheel)
-    inertia = {"inertia": f"{digits(*wheel.inertia)} kg m^2"}
+    inertia = {"crank__inertia": f"{digits(*wheel.inertia)} kg m^2"}
     remark = f"the speed fluctuates by {100.0 * wheel.fluctuation.value:.4g} %"
     if scene.motion is None and not torque:
         return copy_scene(path, file, inertia, remark)

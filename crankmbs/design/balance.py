@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
@@ -13,6 +14,7 @@ from crankmbs.measures import Estimate, Orders
 from crankmbs.measures.orders import Harmonics
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
+from crankmbs.scene.bearings import throw_numbers
 from crankmbs.scene.parts import RunningGear
 from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
@@ -45,8 +47,9 @@ class Balance:
     """Counterweights, mass times radius [kg m], and what remains.
 
     share : of the reciprocating mass
-    per_throw : opposite each cylinder's throw, for its rod's mass at the crank pin and the share of
-        its reciprocating mass
+    per_throw : opposite each throw, in the order of `crankmbs.scene.bearings.throw_numbers`, for
+        the masses of its rods at the crank pin and the share of their reciprocating masses; in all,
+        also what a throw_unbalance of the scene's bearings has of it
     of_crank : opposite the crank's centre of mass; negative: as much less of what it has
     remaining : orders 1 and 2 of the force and, where cylinders have places, rocking moment
     result : the run they are taken from
@@ -78,7 +81,7 @@ class Balance:
         '5 kg at -16.54 mm'
         """
         scene = self.result.scene
-        throws = np.array([np.exp(1j * (c.phase + c.bank)) for c in scene.cylinders])
+        throws = np.exp(1j * _places(scene)[0])
         moment = complex(-np.array(self.per_throw) @ throws)
         if abs(moment) <= _ALONG * max(self.per_throw):  # they cancel
             moment = 0j
@@ -98,13 +101,26 @@ class Balance:
         mass = scene.crank.mass or abs(float(moment.real)) / radius
         return {"mass": mass, "center_of_mass": float(moment.real) / mass if mass else 0.0}
 
+    @property
+    def throw_unbalance(self) -> tuple[float, ...] | None:
+        """throw_unbalance [kg m] of the scene's bearings with the counterweights; None where no
+        journals hold the throws, so that the crank is one body.
+
+        >>> balance(load_scene("propeller"), 0.5).throw_unbalance is None
+        True
+        """
+        if self.result.scene.throws is None:
+            return None
+        return tuple(-moment for moment in self.per_throw)
+
 
 def balance(scene: Scene, share: float = 0.5, *, cost_cap: float = 10.0) -> Balance:
     """Balance a machine's rotating mass and a share of its reciprocating mass.
 
-    per_throw = r (m_B + share m_A),  m_A = m_piston + m_rod a / l,  m_B = m_rod (l - a) / l
+    per_throw = sum r (m_B + share m_A),  m_A = m_piston + m_rod a / l,  m_B = m_rod (l - a) / l
 
-    opposite each throw, in its plane, and m c opposite the crank's centre of mass. What the
+    summed over the rods of a throw, opposite it, in its plane, and m c opposite the crank's centre
+    of mass, or in place of that what takes the unbalance of each throw of [bearings] away. What the
     frame feels before is `frame_force` and `rocking_moment` of a run over its last whole cycle;
     after, with what the counterweights add to it in the same motion, but for their moment of
     inertia, which at a prescribed speed is exact.
@@ -124,8 +140,10 @@ def balance(scene: Scene, share: float = 0.5, *, cost_cap: float = 10.0) -> Bala
     """
     if not 0.0 <= share <= 1.0:
         raise InputError(f"share must be from 0 to 1 of the reciprocating mass; {share!r} came")
-    per_throw = tuple(_counterweight(gear, share) for gear in scene.running_gear)
-    weights = _Weights(scene, per_throw, scene.crank.mass * scene.crank.center_of_mass)
+    per_throw = [0.0] * (max(throw_numbers(scene)) + 1)
+    for throw, gear in zip(throw_numbers(scene), scene.running_gear, strict=True):
+        per_throw[throw] += _counterweight(gear, share)
+    weights = _Weights(scene, tuple(per_throw), scene.crank.mass * scene.crank.center_of_mass)
     result = simulate(scene, cost_cap=cost_cap)
     data = {str(name): variable.values for name, variable in result.data.variables.items()}
     before, after = (
@@ -133,17 +151,28 @@ def balance(scene: Scene, share: float = 0.5, *, cost_cap: float = 10.0) -> Bala
         for added in (0.0, weights.on_frame(data)["frame_force"])
     )
     remaining = tuple(_remaining(result, weights))
-    return Balance(share, per_throw, weights.of_crank, remaining, result, before, after)
+    return Balance(share, weights.per_throw, weights.of_crank, remaining, result, before, after)
 
 
 def _counterweight(gear: RunningGear, share: float) -> float:
-    """For the rotating mass of a cylinder and a share of its reciprocating mass [kg m]."""
+    """For the rotating mass of one rod and a share of its reciprocating mass [kg m]."""
     rod = gear.rod
     masses = two_mass_rod(
         rod_mass=rod.mass, rod_length=rod.length, center_of_mass=rod.center_of_mass
     )
     reciprocating = gear.piston.mass + float(masses.piston_pin)
     return gear.radius * (float(masses.crank_pin) + share * reciprocating)
+
+
+def _places(scene: Scene) -> tuple[Array, Array]:
+    """Of each throw its angle [rad] from the crank's reference line and its place along the crank
+    [m] from the middle, 0 where none is given: amid its rods, as bearings take it."""
+    numbers = np.array(throw_numbers(scene))
+    levers = np.array(scene.levers or (0.0,) * len(numbers))
+    turns = np.array([c.phase + c.bank for c in scene.cylinders])
+    count = range(int(numbers.max()) + 1)
+    angles = np.array([turns[numbers == throw][0] for throw in count])
+    return angles, np.array([levers[numbers == throw].mean() for throw in count])
 
 
 @dataclass(frozen=True)
@@ -159,18 +188,24 @@ class _Weights:
         names = ("crank_angle", "crank_speed", "crank_acceleration")
         theta, omega, alpha = (variables[name] for name in names)
         force, rocking = np.zeros((len(theta), 2)), np.zeros((len(theta), 2))
-        levers = self.scene.levers or (0.0,) * len(self.scene.cylinders)
-        throws = [
-            (moment, c.phase + c.bank, lever)
-            for moment, c, lever in zip(self.per_throw, self.scene.cylinders, levers, strict=True)
-        ]
-        for moment, angle, lever in [*throws, (self.of_crank, 0.0, 0.0)]:
+        throws = zip(self.per_throw, *_places(self.scene), strict=True)
+        for moment, angle, lever in [*throws, *self._of_crank()]:
             cosine, sine = np.cos(theta + angle), np.sin(theta + angle)
             x = -moment * (cosine * omega**2 + sine * alpha)
             y = -moment * (sine * omega**2 - cosine * alpha)
             force += np.stack([x, y], axis=1)
             rocking += lever * np.stack([-y, x], axis=1)
         return {"frame_force": force, "rocking_moment": rocking}
+
+    def _of_crank(self) -> Iterator[tuple[float, float, float]]:
+        """What takes away the unbalances that the crank has, at its throws or in its middle: size
+        [kg m], angle [rad] and place along the crank [m]."""
+        throws = self.scene.throws
+        if throws is None:
+            yield self.of_crank, 0.0, 0.0
+            return
+        for unbalance, lever in zip(throws.unbalances, throws.levers, strict=True):
+            yield abs(unbalance), cmath.phase(unbalance), lever
 
 
 def _remaining(result: Result, weights: _Weights) -> Iterator[Remaining]:

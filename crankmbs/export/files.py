@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from crankmbs.errors import InputError, OutputError, shown
@@ -78,20 +78,21 @@ def refused_kind(to: object) -> str:
 def copy_scene(
     path: str | Path,
     file: str | Path,
-    crank: Mapping[str, str] | None = None,
+    values: Mapping[str, str | Sequence[str]] | None = None,
     remark: str = "",
     *,
     start: Mapping[str, str] | None = None,
     torque: str | None = None,
 ) -> tuple[Path, ...]:
-    """Copy a scene file, its units and comments as they are, with its tables; values of [crank] may
-    be set, or the crank set free.
+    """Copy a scene file, its units and comments as they are, with its tables; values of its
+    parts may be set, or the crank set free.
 
     Parameters
     ----------
     path : of the scene; file : its name ends in .toml
-    crank : key -> value with its unit, {"inertia": "0.3 kg m^2"}; remark : the comment beside each
-    start : the same of [start], in place of [motion]; torque : of a constant load, "-23.7 N m"
+    values : as `Scene.with_` names them, {"crank__inertia": "0.3 kg m^2"}; remark : the comment
+        beside each
+    start : key -> value of [start], in place of [motion]; torque : of a constant load, "-23.7 N m"
 
     Returns
     -------
@@ -103,7 +104,7 @@ def copy_scene(
     OutputError : the file cannot be written, or one of the files exists already
     """
     target = _ending(Path(file), "toml")
-    files = edited_files(Path(path), target, crank or {}, remark, start=start, torque=torque)
+    files = edited_files(Path(path), target, values or {}, remark, start=start, torque=torque)
     return _new(files, target)
 
 

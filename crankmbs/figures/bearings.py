@@ -14,13 +14,16 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crankmbs.figures.polar import ENGINE, THROW, alike, draw_polar
+from crankmbs.figures.polar import ENGINE, THROW, alike, coinciding, draw_polar
 from crankmbs.figures.style import STYLE, footer, one_curve_each, panels
 from crankmbs.figures.view import Plane, View
 
 __all__ = ["bearings_figure"]
 
 _CRANK = ("along the crank's reference line", "90 deg ahead of the crank's reference line")
+_COLUMNS = 3  # of a legend that is no wider than its panel
+_ON_PIN = ", on a shared pin of its first cylinder"
+_SEVERAL = "; before a peak the number of its curve"
 _ROD = ("along the rod, to the piston pin", "90 deg ahead of the rod")
 
 
@@ -31,11 +34,14 @@ def bearings_figure(view: View) -> Figure:
     _draw_journals(view, *axes[:2])
     _draw_pins(view, *axes[2:])
     for ax in axes if len(view.scene.cylinders) > 1 else axes[:2]:
-        columns = min(len(ax.get_legend_handles_labels()[1]), 4)
+        count = len(ax.get_legend_handles_labels()[1])
+        columns = -(-count // -(-count // _COLUMNS))
         ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=columns)
+    throws = view.scene.throws
+    several = _ON_PIN * (throws is not None and throws.shared) + _SEVERAL
     about = (
-        f"bearing loads over the {view.window.kind}; dots: above crank angle [deg] of main "
-        "journal 1, below cycle angle [deg] of cylinder 1"
+        f"bearing loads over the {view.window.kind}; dots: above crank angle [deg], along main "
+        f"journal 1, below cycle angle [deg] of cylinder 1{several}"
     )
     exact = view.exactness("main_journal_force", "crank_pin_force")
     footer(figure, view.result, about, exact)
@@ -46,8 +52,9 @@ def _draw_journals(view: View, shell: Axes, journal: Axes) -> None:
     force = view.force("main_journal_force")
     labels = {group[0]: _named("main journal", group) for group in _shared(view, force)}
     turning = force * np.exp(-1j * np.radians(view.degrees))[:, None]
-    draw_polar(shell, -force, view.degrees, labels, ENGINE)
-    draw_polar(journal, turning, view.degrees, labels, _CRANK)
+    degrees = np.broadcast_to(view.degrees[:, None], force.shape)
+    draw_polar(shell, -force, degrees, labels, ENGINE)
+    draw_polar(journal, turning, degrees, labels, _CRANK)
     shell.set_title("load on main bearing shells, engine's frame")
     journal.set_title("load on main journals, turning with the crank")
 
@@ -75,7 +82,7 @@ def _shared(view: View, force: Plane) -> list[list[int]]:
 def _draw_pins(view: View, shell: Axes, pin: Axes) -> None:
     force, cycles = view.force("crank_pin_force"), view.cycle_degrees
     swung = force * np.exp(1j * view.values("rod_angle"))
-    draw_polar(shell, swung, cycles[:, 0], alike(view, swung), _ROD)
+    draw_polar(shell, swung, cycles, alike(view, swung), _ROD)
     shell.set_title("load on big-end shells, swinging with the rod")
     turned = -force * np.exp(-1j * np.radians(cycles))
     labels = alike(view, turned)
@@ -84,9 +91,10 @@ def _draw_pins(view: View, shell: Axes, pin: Axes) -> None:
         numbers = np.array(throws.numbers)
         count = len(throws.unbalances)
         pins = [turned[:, numbers == throw].sum(axis=1) for throw in range(count)]
-        turned, cycles = np.stack(pins, axis=1), cycles[:, [throws.numbers.index(0)]]
-        labels = {throw: _named("crank pin", [throw]) for throw in range(count)}
-    draw_polar(pin, turned, cycles[:, 0], labels, THROW)
+        firsts = [throws.numbers.index(throw) for throw in range(count)]
+        turned, cycles = np.stack(pins, axis=1), cycles[:, firsts]
+        labels = {g[0]: _named("shared pin", g) for g in coinciding(view, cycles, turned)}
+    draw_polar(pin, turned, cycles, labels, THROW)
     pin.set_title("load on crank pins, turning with the throw")
 
 

@@ -8,7 +8,7 @@ piston; the load on the earlier body is its opposite.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Collection
 from typing import NamedTuple
 
 import numpy as np
@@ -34,6 +34,7 @@ __all__ = [
     "ENGINE",
     "THROW",
     "alike",
+    "coinciding",
     "crank_pin_figure",
     "draw_polar",
     "main_bearing_figure",
@@ -70,9 +71,9 @@ def crank_pin_figure(view: View) -> Figure:
     figure, (fixed, turning) = panels(1, 2, 14.0, 8.0)
     force, cycles = view.force("crank_pin_force"), view.cycle_degrees
     labels = alike(view, force)
-    draw_polar(fixed, force, cycles[:, 0], labels, _CYLINDER)
+    draw_polar(fixed, force, cycles, labels, _CYLINDER)
     fixed.set_title("crank pin: crank on rod, cylinder's frame")
-    draw_polar(turning, force * np.exp(-1j * np.radians(cycles)), cycles[:, 0], labels, THROW)
+    draw_polar(turning, force * np.exp(-1j * np.radians(cycles)), cycles, labels, THROW)
     turning.set_title("crank pin: crank on rod, turning with the crank")
     _finish(figure, fixed, view, "crank pin")
     return figure
@@ -83,7 +84,7 @@ def piston_pin_figure(view: View) -> Figure:
     """Force of the rod on the piston in the cylinder's frame."""
     figure, (ax,) = panels(1, 1, 8.0, 8.0)
     force = view.force("piston_pin_force")
-    draw_polar(ax, force, view.cycle_degrees[:, 0], alike(view, force), _CYLINDER)
+    draw_polar(ax, force, view.cycle_degrees, alike(view, force), _CYLINDER)
     ax.set_title("piston pin: rod on piston, cylinder's frame")
     _finish(figure, ax, view, "piston pin")
     return figure
@@ -95,28 +96,36 @@ def alike(view: View, *panels: Plane | Array) -> dict[int, str]:
 
     panels : shape (n, cylinders), a curve of each cylinder
     """
-    cycles = view.cycle_degrees
+    return {group[0]: whose(group) for group in coinciding(view, view.cycle_degrees, *panels)}
+
+
+def coinciding(view: View, degrees: Array, *panels: Plane | Array) -> list[list[int]]:
+    """Numbers, from 0, of curves that have equal values at equal angles of their own.
+
+    degrees, panels : shape (n, curves), of each curve
+    """
     if not view.whole:
-        return {k: whose([k]) for k in range(cycles.shape[1])}
+        return [[k] for k in range(degrees.shape[1])]
     period = math.degrees(view.scene.period)
 
     def beside(values: Array) -> Array:
-        pairs = zip(cycles.T, values.T, strict=True)
-        return np.stack([np.interp(cycles[:, 0], *pair, period=period) for pair in pairs], axis=-1)
+        pairs = zip(degrees.T, values.T, strict=True)
+        return np.stack([np.interp(degrees[:, 0], *pair, period=period) for pair in pairs], axis=-1)
 
     parts = [part for panel in panels for part in (panel.real, panel.imag)]
-    return {group[0]: whose(group) for group in one_curve_each(*map(beside, parts))}
+    return one_curve_each(*map(beside, parts))
 
 
 def _finish(figure: Figure, ax: Axes, view: View, joint: str) -> None:
     several = len(view.scene.cylinders) > 1
     if several:
         legend(figure, ax)
-    _caption(figure, view, joint, f"cycle angle{' of cylinder 1' * several}")
+    whole = "; of a peak, that of the cylinder before it"
+    _caption(figure, view, joint, "cycle angle", f" of cylinder 1{whole}" * several)
 
 
-def _caption(figure: Figure, view: View, joint: str, angle: str) -> None:
-    about = f"{joint} force over the {view.window.kind}; dots: {angle} [deg]"
+def _caption(figure: Figure, view: View, joint: str, angle: str, of: str = "") -> None:
+    about = f"{joint} force over the {view.window.kind}; dots: {angle} [deg]{of}"
     exact = view.exactness(f"{joint.replace(' ', '_')}_force")
     footer(figure, view.result, about, exact)
 
@@ -126,7 +135,9 @@ def draw_polar(
 ) -> None:
     """Draw curves with a label, and mark the largest force of all and angles along the first.
 
-    force : shape (n, curves); degrees : of the first; sense : what is upwards, to the left
+    force : shape (n, curves); sense : what is upwards, to the left
+    degrees : of each curve, shape (n, curves), by the number of which the peak is then named where
+        several are drawn; or of all, shape (n,)
     """
     scale, unit = force_scale(force.real, force.imag)
     curves = force / scale
@@ -141,18 +152,21 @@ def draw_polar(
     _frame(ax, curves, _marks(curves, labels, degrees))
 
 
-def _marks(curves: Plane, drawn: Iterable[int], degrees: Array) -> list[_Mark]:
+def _marks(curves: Plane, drawn: Collection[int], degrees: Array) -> list[_Mark]:
     """The largest force of all curves drawn; then, on the first, the samples nearest to every 90
     degrees and to every 30 between them, those that lie apart from all before.
 
-    degrees : shape (n,), of the first; labels are within two turns
+    degrees : shape (n, curves) or (n,), as `draw_polar` takes them; labels are within two turns
     """
+    numbered = degrees.ndim > 1 and len(drawn) > 1
+    own = np.broadcast_to(degrees.reshape(len(degrees), -1), curves.shape)
+    degrees = own[:, 0]
     curve, size = curves[:, 0], np.abs(curves)
     apart = _APART * max(float(np.ptp(curve.real)), float(np.ptp(curve.imag)))
     of = max(drawn, key=lambda k: float(size[:, k].max()))
     peak = int(size[:, of].argmax())
-    at = round(float(degrees[peak]), 1) % 720.0
-    marks = [_Mark(complex(curves[peak, of]), f"peak {at:g}")]
+    at = round(float(own[peak, of]), 1) % 720.0
+    marks = [_Mark(complex(curves[peak, of]), f"{f'{of + 1}: ' * numbered}peak {at:g}")]
     low, high = float(degrees.min()), float(degrees.max())
     first = math.ceil(low / _STEP - 1e-6) * _STEP
     angles = range(first, min(math.floor(high + 1e-6), first + 719) + 1, _STEP)

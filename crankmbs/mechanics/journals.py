@@ -4,20 +4,23 @@ With R_k the crank's force on rod k, u_j the unbalance of throw j as a complex n
 engine's frame at crank angle 0, m g / T the weight of each of T throws, and the shares s and t of
 `crankmbs.scene.bearings.Throws`, the bearing's force on journal i is
 
-    F_i = sum_k s_ik R_k + sum_j t_ij ((i alpha - omega^2) u_j exp(i theta) - m g / T)
+    F_i = sum_k s_ik R_k + sum_j t_ij S_j,   S_j = (i alpha - omega^2) u_j exp(i theta) - m g / T
 
-As the shares of every load add up to 1, all journals together carry the main bearing's force.
+As the shares of every load add up to 1, all journals together carry the main bearing's force. The
+frame feels -S_j at each throw's place, the moment of which is in its rocking moments.
 """
 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crankmbs.mechanics.axes import axes_of, gravity_vector
 from crankmbs.numerics.arrays import Array
+from crankmbs.scene.bearings import Throws
 from crankmbs.scene.scene import Scene
 
-__all__ = ["journal_rows", "of_journals", "of_rods"]
+__all__ = ["journal_rows", "of_journals", "of_rods", "rocking_of_throws"]
 
 _JOURNAL = ("main_journal_force_x", "main_journal_force_y")
 _PIN = ("pin_force_x", "pin_force_y")
@@ -50,14 +53,36 @@ def of_journals(
     joints, throws = of_rods(scene, *rods), scene.throws
     if throws is None:
         return joints
+    held = np.tensordot(np.array(throws.throws), _of_throws(scene, throws, theta, motion), 1)
+    for name, part in zip(_JOURNAL, (held.real, held.imag), strict=True):
+        joints[name] = joints[name] + part
+    return joints
+
+
+def rocking_of_throws(
+    scene: Scene, theta: Array, motion: tuple[Array, Array, Array]
+) -> tuple[Array, Array] | None:
+    """Moments about X and Y, middle of the crank, of what the throws' unbalances and weights do to
+    the frame, shape (u, n) [N m]; None without bearings, where the crank's mass is in the middle.
+
+    theta and motion as `of_journals` takes them
+    """
+    throws = scene.throws
+    if throws is None:
+        return None
+    on_frame = -np.tensordot(np.array(throws.levers), _of_throws(scene, throws, theta, motion), 1)
+    return -on_frame.imag, on_frame.real
+
+
+def _of_throws(
+    scene: Scene, throws: Throws, theta: Array, motion: tuple[Array, Array, Array]
+) -> NDArray[np.complex128]:
+    """What its journals do to each throw for its own mass, shape (throws, u, n) [N]."""
     square, alpha, one = motion
     weight = complex(*gravity_vector(scene)) * scene.crank.mass / len(throws.unbalances)
     turning = np.exp(1j * theta) * (1j * alpha - square)
     unbalance = np.array(throws.unbalances)[:, np.newaxis, np.newaxis]
-    of_throws = np.tensordot(np.array(throws.throws), unbalance * turning - weight * one, 1)
-    for name, part in zip(_JOURNAL, (of_throws.real, of_throws.imag), strict=True):
-        joints[name] = joints[name] + part
-    return joints
+    return np.asarray(unbalance * turning - weight * one)
 
 
 def of_rods(scene: Scene, x: Array, y: Array) -> dict[str, Array]:

@@ -19,7 +19,7 @@ import numpy as np
 from crankmbs.mechanics.axes import axes_of, closed_loops, gears_of, gravity_vector
 from crankmbs.mechanics.geometry import Loop
 from crankmbs.mechanics.inertia import crank_weight, ends_at, gas_at, moving_inertias, rod_centre
-from crankmbs.mechanics.journals import journal_rows, of_journals, of_rods
+from crankmbs.mechanics.journals import journal_rows, of_journals, of_rods, rocking_of_throws
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.periodic import Period
@@ -58,6 +58,7 @@ _OF_CRANK = (
     "frame_force_y",
     "frame_moment",
 )
+_ROCKING = ("rocking_moment_x", "rocking_moment_y")
 _OF_JOINTS = (
     "side_force",
     "piston_pin_force_x",
@@ -84,7 +85,7 @@ def rows_of(scene: Scene) -> dict[str, int]:
     41
     """
     count = len(scene.cylinders)
-    rocking = () if scene.levers is None else ("rocking_moment_x", "rocking_moment_y")
+    rocking = () if scene.levers is None else _ROCKING
     of_crank = dict.fromkeys((*_OF_CRANK, *rocking), 1) | journal_rows(scene)
     ends = (_OF_CRANK_END,) if scene.double_acting else ()
     return of_crank | dict.fromkeys((*_OF_CYLINDER, *ends), count)
@@ -204,6 +205,10 @@ def of_crank(scene: Scene, theta: Array, motion: Powers, cylinders: Cylinders) -
     if scene.levers is not None:
         along_x, along_y = _in_the_engine(scene, np.array(scene.levers), *shake)
         sums |= {"rocking_moment_x": -along_y, "rocking_moment_y": along_x}
+        for name, part in zip(
+            _ROCKING, rocking_of_throws(scene, theta, motion) or (), strict=False
+        ):
+            sums[name] = sums[name] + part
     return sums
 
 

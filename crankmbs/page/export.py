@@ -119,7 +119,19 @@ def machine(scene: Scene) -> dict[str, Any]:
             for cylinder, gear in zip(scene.cylinders, scene.running_gear, strict=True)
         ],
         "levers": None if scene.levers is None else list(scene.levers),
+        "throws": _throws(scene),
     }
+
+
+def _throws(scene: Scene) -> dict[str, Any] | None:
+    """Of the crank's own mass, which throws with bearings share: its mean place along the crank
+    [m], and what unbalances that are not alike rock beside it, [kg m2] at crank angle 0."""
+    throws = scene.throws
+    if throws is None or scene.levers is None:
+        return None
+    levers, unbalances = np.array(throws.levers), np.array(throws.unbalances)
+    beside = complex(levers @ (unbalances - unbalances.mean()))
+    return {"lever": float(levers.mean()), "couple": [beside.real, beside.imag]}
 
 
 def _gear(gear: RunningGear) -> dict[str, Any]:

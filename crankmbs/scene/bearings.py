@@ -22,10 +22,16 @@ from crankmbs.scene.schema import Float, part, si
 if TYPE_CHECKING:
     from crankmbs.scene.scene import Scene
 
-__all__ = ["Bearings", "Shell", "Throws", "throws_of"]
+__all__ = ["Bearings", "Shell", "Throws", "throw_numbers", "throws_of"]
 
 _SAME = 1e-9  # rad: throws nearer than this stand at one angle
 _CLOSES = 1e-6  # of the largest unbalance: so near is the sum of all to the crank's
+
+_SPLIT = (
+    "split pins with no journal between them cannot be described: without throw, main_journal and "
+    "journal_positions each is a throw of its own, and the loads of crank pins and of the main "
+    "bearing as a whole are right, but not its split among journals"
+)
 
 
 @part
@@ -69,12 +75,16 @@ class Throws(NamedTuple):
     rods : for each journal the share of every cylinder's load that it carries
     throws : for each journal the share of what belongs to every throw itself
     unbalances : of each throw, complex [kg m], in the engine's frame at crank angle 0
+    levers : how far each throw stands beyond the middle of the crank [m]; 0 of one without a place
+    journals : their places along the crank [m]; none where one throw is held by halves
     """
 
     numbers: tuple[int, ...]
     rods: tuple[tuple[float, ...], ...]
     throws: tuple[tuple[float, ...], ...]
     unbalances: tuple[complex, ...]
+    levers: tuple[float, ...]
+    journals: tuple[float, ...]
 
     @property
     def shared(self) -> bool:
@@ -93,7 +103,7 @@ def throws_of(scene: Scene) -> Throws | None:
     >>> throws_of(scene).rods
     ((0.5,), (0.5,))
     """
-    bearings, numbers = scene.bearings, _numbers(scene)
+    bearings, numbers = scene.bearings, throw_numbers(scene)
     if bearings is None:
         return None
     count = max(numbers) + 1
@@ -119,11 +129,21 @@ def throws_of(scene: Scene) -> Throws | None:
         _shares(journals, numbers, along),
         _shares(journals, range(count), middles),
         _unbalances(scene, bearings, numbers, count),
+        tuple(place - 0.5 * (min(along) + max(along)) for place in middles),
+        tuple(journals),
     )
 
 
-def _numbers(scene: Scene) -> tuple[int, ...]:
-    """The throw of each cylinder, from 0; where none is given, one for each along the crank."""
+def throw_numbers(scene: Scene) -> tuple[int, ...]:
+    """The throw of each cylinder, from 0; where none is given, one for each along the crank.
+
+    Raises
+    ------
+    InputError : throws that contradict one another
+
+    >>> throw_numbers(load_scene("v_twin"))
+    (0, 1)
+    """
     cylinders = scene.cylinders
     throws = [cylinder.throw for cylinder in cylinders]
     if None in throws:
@@ -148,7 +168,7 @@ def _numbers(scene: Scene) -> tuple[int, ...]:
             raise InputError(
                 f"layout.cylinders[{k + 1}].throw: cylinders of one throw share a pin, so phase + "
                 f"bank is the same; cylinders {first + 1} and {k + 1} of throw {number + 1} have "
-                f"{at[0]:.6g} and {at[1]:.6g} degrees"
+                f"{at[0]:.6g} and {at[1]:.6g} degrees; {_SPLIT}"
             )
         radii = [scene.running_gear[i].radius for i in (first, k)]
         if radii[0] != radii[1]:
@@ -178,7 +198,7 @@ def _journals(bearings: Bearings, throws: list[float]) -> list[float]:
     if len(positions) != len(throws) + 1:
         raise InputError(
             f"bearings.journal_positions: one more than throws is needed, {len(throws) + 1}; "
-            f"{len(positions)} came"
+            f"{len(positions)} came; rods that share a pin have the same throw; {_SPLIT}"
         )
     sign = 1.0 if positions[-1] > positions[0] else -1.0
     for k, place in enumerate(throws):

@@ -1,4 +1,4 @@
-"""A scene file copied with its crank set, or set free: units, comments and order stay."""
+"""A scene file copied with values of its parts set, or set free: units, comments and order stay."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ _WORDS = {"title", "source"}
 def edited_files(
     path: Path,
     target: Path,
-    crank: Mapping[str, str],
+    values: Mapping[str, str | Sequence[str]],
     remark: str = "",
     *,
     start: Mapping[str, str] | None = None,
     torque: str | None = None,
 ) -> dict[str, bytes]:
-    """The text of a scene file with values of [crank] and [start] set, and its tables.
+    """The text of a scene file with values of its parts and [start] set, and its tables.
 
     A file whose tables cannot be edited in place, such as inline ones, is written anew as
     `scene_files` does.
@@ -37,8 +37,9 @@ def edited_files(
     ----------
     path : the scene file; target : where the copy shall stand, beside whose name its tables are
         named unless it stands in the same folder
-    crank : key -> value with its unit, "0.3 kg m^2"; remark : the comment beside each
-    start : the same of [start], which takes the place of [motion], if any
+    values : as `Scene.with_` names them, "crank__inertia", each with its unit, "0.3 kg m^2", or a
+        list of such; remark : the comment beside each
+    start : key -> value of [start], which takes the place of [motion], if any
     torque : of a further constant load, "-23.7 N m"
 
     Returns
@@ -50,8 +51,14 @@ def edited_files(
     SceneError, InputError : a bad scene, or one that is bad with these values
     """
     scene = load_scene(path)
-    edited = scene.with_(**{f"crank__{key}": value for key, value in crank.items()})
-    text = _set(path.read_bytes().decode("utf-8-sig"), "crank", crank, remark)
+    changes = {name: v if isinstance(v, str) else tuple(v) for name, v in values.items()}
+    edited, text = scene.with_(**changes), path.read_bytes().decode("utf-8-sig")
+    parts: dict[str, dict[str, str | Sequence[str]]] = {}
+    for name, value in values.items():
+        heading, _, key = name.partition("__")
+        parts.setdefault(heading, {})[key] = value
+    for heading, of_part in parts.items():
+        text = _set(text, heading, of_part, remark)
     if start is not None:
         load = () if torque is None else ({"kind": "constant", "torque": torque},)
         free: Any = {"start": dict(start), "motion": None, "torque": (*edited.torque, *load)}
@@ -72,7 +79,7 @@ def edited_files(
     return {target.name: text.encode(), **tables}
 
 
-def _set(text: str, heading: str, values: Mapping[str, str], remark: str) -> str:
+def _set(text: str, heading: str, values: Mapping[str, str | Sequence[str]], remark: str) -> str:
     """The text with these values, where it has this heading."""
     lines = text.splitlines()
     begin = _line_below(lines, heading)
@@ -82,9 +89,15 @@ def _set(text: str, heading: str, values: Mapping[str, str], remark: str) -> str
     for key, value in reversed(list(values.items())):  # each below the heading, above the last
         of_key = re.compile(rf"\s*{key}\s*=")
         place = next((k for k in range(begin, _end(lines, begin)) if of_key.match(lines[k])), None)
-        new = f'{key} = "{value}"{comment}'
+        new = f"{key} = {_toml(value)}{comment}"
         lines[begin if place is None else place : begin if place is None else place + 1] = [new]
     return "\n".join(lines) + "\n"
+
+
+def _toml(value: str | Sequence[str]) -> str:
+    if isinstance(value, str):
+        return f'"{value}"'
+    return f"[{', '.join(map(_toml, value))}]"
 
 
 def _without_motion(text: str) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from crankmbs.mechanics.geometry import top_position
-from crankmbs.mechanics.journals import of_journals
+from crankmbs.mechanics.journals import of_journals, rocking_of_throws
 from crankmbs.mechanics.peaks import peak
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import EVERY, SUMS
@@ -169,7 +169,13 @@ class Answers:
         }
         if scene.levers is not None:
             rocking = (pull[:, 1::2] + pull[:, 2::2]) @ np.array(scene.levers)
-            values |= {"rocking_moment_x": -rocking.imag, "rocking_moment_y": rocking.real}
+            square, alpha = rate[np.newaxis, :, 0] ** 2, spin[np.newaxis, :, 0]
+            throws = rocking_of_throws(scene, phi[:, 0], (square, alpha, np.ones_like(alpha)))
+            about_x, about_y = (0.0, 0.0) if throws is None else (each[0] for each in throws)
+            values |= {
+                "rocking_moment_x": about_x - rocking.imag,
+                "rocking_moment_y": about_y + rocking.real,
+            }
         return values
 
     def _of_joints(self, system: Consistent) -> dict[str, Array]:

@@ -48,7 +48,7 @@ export class Engine {
    *
    * quick : diagrams of polytropes are fitted to what a screen shows */
   train(scene, quick = false) {
-    const { crank, cylinders, levers, gravity, friction, loads, fuel, period } = scene;
+    const { crank, cylinders, levers, throws, gravity, friction, loads, fuel, period } = scene;
     const gears = this.gears(scene);
     const [{ shape, piston }] = gears;
     const pressures = quick ? this.pressures.quick : this.pressures.fine;
@@ -56,8 +56,8 @@ export class Engine {
     const { pressure, combustion, crank_end } =
       pressures(scene.gas, shape, share, quick ? SEEN : DIAGRAM);
     return {
-      gears, shape, piston, crank, cylinders, levers, gravity, friction, loads, fuel, period,
-      pressure, combustion, crank_end, applies: scene.force.length > 0,
+      gears, shape, piston, crank, cylinders, levers, throws, gravity, friction, loads, fuel,
+      period, pressure, combustion, crank_end, applies: scene.force.length > 0,
     };
   }
 

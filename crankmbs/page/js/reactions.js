@@ -118,7 +118,7 @@ function turned(bank, x, y) {
   return [cos * x - sin * y, sin * x + cos * y];
 }
 
-function crankAt({ crank, gravity, levers }, { theta, omega, alpha }, cylinders) {
+function crankAt({ crank, gravity, levers, throws }, { theta, omega, alpha }, cylinders) {
   const square = omega * omega;
   const first = crank.mass * crank.center_of_mass;
   const [sin, cos] = [Math.sin(theta), Math.cos(theta)];
@@ -147,5 +147,11 @@ function crankAt({ crank, gravity, levers }, { theta, omega, alpha }, cylinders)
   const about = (part) => levers.reduce((total, lever, k) => total + lever * part(cylinders[k]), 0);
   found.rocking_moment_x = -about((each) => each.shake[1]);
   found.rocking_moment_y = about((each) => each.shake[0]);
+  if (throws) { // bearings hold the crank's own mass at its throws
+    const { lever, couple: [along, across] } = throws;
+    const [x, y] = [cos * along - sin * across, sin * along + cos * across];
+    found.rocking_moment_x += lever * ownY - (y * square - x * alpha);
+    found.rocking_moment_y += x * square + y * alpha - lever * ownX;
+  }
   return found;
 }

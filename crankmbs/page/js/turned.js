@@ -41,8 +41,9 @@ export class Turner {
     refuseUncovered(scene.force, gears, sentences);
     const shares = gears.map((gear) => gear.piston.crank_end_share);
     const gas = this.gas(scene.gas, at.pressure * PERCENT, shares);
-    const levers = cylinders === scene.cylinders ? scene.levers : null;
-    const parts = { crank, rod, piston, cylinders, levers, gas };
+    const [levers, throws] =
+      cylinders === scene.cylinders ? [scene.levers, scene.throws] : [null, null];
+    const parts = { crank, rod, piston, cylinders, levers, throws, gas };
     const turned = { ...scene, ...parts, ...this.driven(at, values) };
     if (scene.motion === null || values.speed_is !== "free") return turned;
     refuseNoInertia(crank, gears, sentences);
