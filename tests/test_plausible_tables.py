@@ -4,9 +4,11 @@ should be."""
 from dataclasses import replace
 from math import pi
 
+import numpy as np
 import pytest
 
-from crankmbs import CylinderTable, Table, load_scene
+from crankmbs import CylinderTable, Motion, Run, SpeedFile, Table, load_scene, simulate
+from crankmbs.cli.report import report
 from crankmbs.measures.plausible import warnings
 
 FOUR, V_TWIN = (load_scene(name) for name in ("yi_diesel_free", "v_twin"))
@@ -99,3 +101,69 @@ def test_each_key_and_each_file_is_looked_at_once():
         assert said.startswith("gas.pressure: ")
     (said,) = gaps(replace(FOUR, gas=replace(FOUR.gas, motored=cut)))
     assert said.startswith("gas.motored: table has no row between 599 and 720 degrees")
+
+
+def turning(rows, *, noise, kind="time_table", waves=4.0):
+    """The engine at a measured speed of 1500 rpm with errors of some rpm."""
+    x = np.linspace(0.0, 0.08 if kind == "time_table" else 4.0 * pi, rows)
+    rpm = 1500.0 + 30.0 * np.cos(2.0 * pi * waves * x / x[-1])
+    rpm += noise * np.random.default_rng(5).standard_normal(rows)
+    rpm[-1] = rpm[0]
+    table = Table(x, rpm * pi / 30.0, "speed.csv")
+    run = Run(until="1 rev" if kind == "time_table" else "2 cycles")
+    moved = Motion(speed=SpeedFile(file=table, kind=kind))
+    return replace(FOUR, start=None, torque=(), motion=moved, run=run)
+
+
+@pytest.mark.parametrize("kind", ["time_table", "angle_table"])
+@pytest.mark.parametrize(("rows", "noise"), [(400, 3.0), (400, 1.0), (100, 3.0)])
+def test_a_speed_that_scatters_is_said(rows, noise, kind):
+    (said,) = warnings(turning(rows, noise=noise, kind=kind))
+    step = 0.08 / (rows - 1)
+    usual = 0.6745 * 5.0**0.5 * noise * pi / 30.0 / step  # median of a normal deviation
+    assert float(said.split("some ")[1].split()[0]) == pytest.approx(usual, rel=0.2)
+    torque = float(said.split("rad/s^2, ")[1].split()[0])
+    assert torque == pytest.approx(usual * FOUR.crank.moment_of_inertia, rel=0.2)
+    assert said.startswith("motion.speed: the rows of speed.csv scatter: the acceleration ")
+
+
+def cornered():
+    """Straight between five rows, read at two hundred."""
+    x = np.linspace(0.0, 1.0, 200)
+    rpm = np.interp(x, [0.0, 0.2, 0.4, 0.7, 1.0], [900.0, 1500.0, 1450.0, 700.0, 800.0])
+    table = Table(x, rpm * pi / 30.0)
+    return replace(
+        FOUR,
+        start=None,
+        torque=(),
+        motion=Motion(speed=SpeedFile(file=table)),
+        run=Run(until="1 rev"),
+    )
+
+
+COURSES = {
+    "smooth": turning(400, noise=0.0),
+    "smooth over the angle": turning(400, noise=0.0, kind="angle_table"),
+    "six rows a wave": turning(25, noise=0.0),
+    "three digits": turning(400, noise=1e-3, waves=0.0),
+    "few rows": turning(19, noise=20.0),
+    "corners": cornered(),
+}
+
+
+@pytest.mark.parametrize("name", COURSES)
+def test_a_course_is_no_scatter(name):
+    assert warnings(COURSES[name]) == ()
+
+
+@pytest.mark.parametrize(
+    ("motion", "given"),
+    [
+        (turning(50, noise=0.0).motion, "pressures and speed"),
+        (Motion(speed="3000 rpm"), "pressures"),
+    ],
+)
+def test_the_numerical_error_holds_none_of_what_is_given(motion, given):
+    result = simulate(replace(turning(50, noise=0.0), motion=motion))
+    said = report("four", result, result.measures())
+    assert f"asked for; errors of the given {given} are not in it\n" in said

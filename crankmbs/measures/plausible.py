@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.measures.plausible_tables import gaps
+from crankmbs.measures.plausible_tables import gaps, scatter
 from crankmbs.mechanics.geometry import close_loop
 from crankmbs.mechanics.pressure import PeriodicPressure, crank_ends_of, pressures_of
 from crankmbs.scene.gas import CONSTANT, Gas
@@ -390,4 +390,4 @@ def _gas_work(scene: Scene) -> float:
 
 _Rules = tuple[Callable[..., Iterator[str]], ...]
 _OF_GEAR: _Rules = (_stroke, _bore, _masses, _light_masses, _rod_length, _offset, _fold, _rod)
-_OF_SCENE: _Rules = (_inertia, _shells, _pressures, gaps, _peak, _loads, _forces)
+_OF_SCENE: _Rules = (_inertia, _shells, _pressures, gaps, scatter, _peak, _loads, _forces)
