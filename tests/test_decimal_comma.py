@@ -6,6 +6,7 @@ import pytest
 from crankmbs.delimited import read_sheet
 from crankmbs.delimited.encoding import Text
 from crankmbs.errors import InputError
+from crankmbs.scene.tables import Header, read_table
 
 ROWS = "0,2499\n0,2506\n1,0013\n"
 ONE, TWO = [[0.2499], [0.2506], [1.0013]], [[0.0, 2499.0], [0.0, 2506.0], [1.0, 13.0]]
@@ -53,3 +54,15 @@ def test_a_file_that_may_be_read_both_ways_is_refused():
 def test_a_decimal_comma_never_separates():
     with pytest.raises(InputError, match="no rows of at least two numbers, with the decimal sign"):
         read(ROWS, least=2, decimal=",")
+
+
+def test_semicolons_between_columns_are_named_with_a_way_out(tmp_path):
+    file = tmp_path / "speed.csv"
+    file.write_text("time_s;speed_rpm\n0,0;1500,0\n0,1;1510,0\n")
+    header = Header({"time_s": 1.0}, {"speed_rpm": 1.0})
+    way_out = "write it with commas between the columns and decimal points"
+    with pytest.raises(InputError, match=f"came; {way_out}$"):
+        read_table(file, header)
+    file.write_text("time,speed_rpm\n0,1500\n")
+    with pytest.raises(InputError, match=r'"time,speed_rpm" came$'):
+        read_table(file, header)

@@ -38,7 +38,8 @@ _COLUMNS = Header(
         "pressure_kgf_cm2": 98066.5,
     },
     "crank angles [rad], pressures [Pa]",
-    way_out='; columns = "..." with the pressure\'s heading reads a file that has other headings',
+    way_out='; columns = "..." with the pressure\'s heading reads a file that has other headings '
+    "or separators",
 )
 _FILE = CsvFile(_COLUMNS, numbered=True, others=', a list of them, or a pressure such as "1 bar"')
 
