@@ -56,7 +56,7 @@ def test_the_usual_headings_lead_to_columns(read, tmp_path):
     assert message == (
         "gas.pressure: file gas.csv: the header must name exactly one column crank_angle_deg, "
         'with commas between the columns; "Angle/deg,Pressure/bar" came; columns = "..." with the '
-        "pressure's heading reads a file that has other headings"
+        "pressure's heading reads a file that has other headings or separators"
     )
     assert read(given('columns = "Pressure"')).gas.pressure.y == pytest.approx((1e5, 2e5, 3e5))
 

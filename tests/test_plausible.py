@@ -58,6 +58,12 @@ def turned_by(scene, degrees):
     return regassed(scene, pressure=Table([x + degrees * pi / 180 for x in table.x], table.y))
 
 
+def with_indicator(**changes):
+    """The engine that `crankmbs new` writes."""
+    scene = parse_scene(template("mine"), Path("mine.toml"))
+    return regassed(scene, indicator=replace(scene.gas.indicator, **changes))
+
+
 SHIPPED = {name: load_scene(name) for name in shipped_scenes()}
 SPARED = {
     **SHIPPED,
@@ -75,6 +81,10 @@ SPARED = {
     "a brake on an engine that turns backwards": replace(
         FOUR, start=Start(angle=0.0, speed=-335.0), torque=(Quadratic(coefficient=1e-4),)
     ),
+    "a gauge pressure of 0": regassed(
+        V_TWIN, pressure=0.0, indicator=None, absolute=False, ambient=None
+    ),
+    "a vacuum pump": regassed(V_TWIN, pressure=1e3, indicator=None),
     "an engine peaking 30 degrees late": turned_by(DIESEL, 16.0),
     "a piston and a rod of a model engine": reroded(
         repistoned(
@@ -225,6 +235,31 @@ ODD = {
         regassed(DIESEL, ambient=1.0),
         "gas.ambient: 1e-05 bar is outside 0.2 to 50 bar, where crankcases lie; a bare number is "
         "in Pa",
+    ),
+    "a pressure of 30 Pa": (
+        regassed(V_TWIN, pressure=30.0, indicator=None),
+        "gas.pressure: 0.0003 bar is outside 0.01 to 4000 bar, where pressures of cylinders lie; a "
+        "bare number is in Pa",
+    ),
+    "a gauge pressure of -30 Pa": (
+        regassed(V_TWIN, pressure=-30.0, indicator=None, absolute=False, ambient=None),
+        "gas.pressure: -0.0003 bar is outside 0.01 to 4000 bar, where pressures of cylinders lie; "
+        "a bare number is in Pa",
+    ),
+    "kPa for Pa": (
+        regassed(V_TWIN, pressure=5e8, indicator=None),
+        "gas.pressure: 5e+03 bar is outside 0.01 to 4000 bar, where pressures of cylinders lie; a "
+        "bare number is in Pa",
+    ),
+    "one of a list": (
+        regassed(DIESEL, motored=(1.2, *("1 bar",) * (len(DIESEL.cylinders) - 1))),
+        "gas.motored: 1.2e-05 bar is outside 0.01 to 4000 bar, where pressures of cylinders lie; a "
+        "bare number is in Pa",
+    ),
+    "an intake of 1 Pa": (
+        with_indicator(intake_pressure=1.0),
+        "gas.indicator.intake_pressure: 1e-05 bar is outside 0.01 to 4000 bar, where pressures of "
+        "cylinders lie; a bare number is in Pa",
     ),
     "a load that drives": (
         replace(FOUR, torque=(Quadratic(coefficient=1e-4), Constant(torque=87.3))),

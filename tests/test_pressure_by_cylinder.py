@@ -205,7 +205,7 @@ HEAD = "crank_angle_deg,pressure_bar_1,pressure_bar_2\n"
             '"1 bar"\ninterpolation = "cubic"',
             "",
             "gas: zero, interpolation, closing and cycles belong to a pressure file; remove them "
-            "beside a constant",
+            "beside a constant of 1 bar (a bare number is in Pa)",
         ),
         (
             '"1 mm"',

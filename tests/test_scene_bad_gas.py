@@ -104,7 +104,7 @@ def test_a_bad_gas_gets_one_sentence(read, old, new, message):
         (
             "0,1\n180,1\n359,2\n",
             "a gap of 361 degrees without a row; the table must span the cycle of 720 degrees with "
-            "no gap above its half",
+            "no gap above its half; give stroke = 2 where the rows are those of a two-stroke cycle",
         ),
         (
             "0,1\n180,3\n360,1\n",

@@ -16,6 +16,7 @@ from crankmbs.measures.plausible import warnings
 from crankmbs.report.machine import journal_remarks
 from crankmbs.report.rows import cycle_remark, degrees_within, tables, unsteady
 from crankmbs.result import Result
+from crankmbs.scene.drives import SpeedFile
 from crankmbs.scene.units import RPM
 
 if TYPE_CHECKING:
@@ -140,9 +141,12 @@ def _closure(measures: Measures) -> str:
 
 
 def _error_line(result: Result) -> str:
-    error, gas = result.error, result.scene.gas
-    has_tables = gas is not None and bool(gas.tables)
-    alone = "; errors of the given pressures are not in it" if has_tables else ""
+    error, (gas, motion) = result.error, (result.scene.gas, result.scene.motion)
+    given = [
+        *(["pressures"] if gas is not None and gas.tables else []),
+        *(["speed"] if motion is not None and isinstance(motion.speed, SpeedFile) else []),
+    ]
+    alone = f"; errors of the given {' and '.join(given)} are not in it" if given else ""
     return f"{'num. error':<12} {error.estimated:.1e} relative, {error.asked:.0e} asked for{alone}"
 
 

@@ -84,7 +84,7 @@ def find_dialect(
         for point in (".", ",") if decimal is None else (decimal,):
             rows = [split(line, sign) for line in lines]
             good = [cells for cells in rows if is_row(cells, point, least)]
-            if decimal is None and separator is None and sign == point == ",":
+            if separator is None and sign == point == ",":  # in quotes alone it is both
                 good = [cells for cells in good if any("," in cell for cell in cells)]
             score = (len(good), min(map(len, good), default=0))
             if score > best:

@@ -10,6 +10,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -96,6 +97,8 @@ def read_sheet(
     begin = None if dialect is None else _begin(head, skip, dialect, least)
     if dialect is None or begin is None:
         raise InputError(_no_rows(name, head, skip, separator, decimal))
+    if least == 1 and separator is decimal is None and dialect == (",", "."):
+        dialect = _single_column(name, head[skip:begin], _probe(head[begin:])) or dialect
     width = len(split(head[begin], dialect.separator))
     above = [_headings(line, dialect.separator, width) for line in head[skip:begin]]
     body = source.text[offset[begin] :]
@@ -104,6 +107,30 @@ def read_sheet(
     for missing in _OFF:
         values[values == missing] = np.nan
     return Sheet(name, tuple(above), values, begin + 1, dialect, source.encoding)
+
+
+def _single_column(name: str, above: list[str], rows: list[str]) -> Dialect | None:
+    """One column with decimal commas, where two of whole numbers are read: as the headings have it,
+    or where the first of two does not rise as the numbers do.
+
+    Raises
+    ------
+    InputError : both readings are possible
+    """
+    cells = [split(row, ",") for row in rows]
+    if not all(len(row) == 2 and all(cell.isdigit() for cell in row) for row in cells):
+        return None
+    single = Dialect(";", ",")
+    widths = {len(split(line, ",")) for line in _probe(above)}
+    whole = [float(first) for first, _ in cells]
+    values = [float(f"{first}.{second}") for first, second in cells]
+    rises, both = (all(a < b for a, b in pairwise(each)) for each in (values, whole))
+    if rises and both and not widths:
+        raise InputError(
+            f"file {name}: {shown(rows[0])} may be two columns of whole numbers or one with "
+            'decimal commas; give separator="," or decimal=","'
+        )
+    return single if widths == {1} or (rises and not both) else None
 
 
 def _headings(line: str, separator: str, width: int) -> tuple[str, ...]:

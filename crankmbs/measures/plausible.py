@@ -12,12 +12,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from crankmbs.measures.plausible_tables import gaps, scatter
 from crankmbs.measures.room import bores_overlap, shells_overlap
 from crankmbs.mechanics.geometry import close_loop
 from crankmbs.mechanics.pressure import PeriodicPressure, crank_ends_of, pressures_of
-from crankmbs.scene.gas import Gas
+from crankmbs.scene.gas import CONSTANT, Gas
 from crankmbs.scene.parts import RunningGear
 from crankmbs.scene.scene import Scene
+from crankmbs.scene.tables import Table
 from crankmbs.scene.units import BAR
 
 __all__ = ["warnings"]
@@ -249,18 +251,34 @@ def _shells(scene: Scene) -> Iterator[str]:
 
 # 0.3 bar is the air on Mount Everest; refrigerating compressors have crankcases of up to 35 bar.
 _AMBIENT = 0.2 * BAR, 50.0 * BAR
+# Vacuum pumps with pistons come to 10 mbar. Above stand pressures of plungers.
+_CYLINDER = 0.01 * BAR, 4000.0 * BAR
 
 
-def _ambient(scene: Scene) -> Iterator[str]:
+def _pressures(scene: Scene) -> Iterator[str]:
+    """Each pressure that is one number; that of a gauge pressure may be 0, and have either sign."""
     gas = scene.gas
-    if gas is None or gas.ambient is None:
+    if gas is None:
         return
-    least, most = _AMBIENT
-    if not least <= gas.ambient <= most:
-        yield (
-            f"gas.ambient: {gas.ambient / BAR:.3g} bar is outside {least / BAR:g} to "
-            f"{most / BAR:g} bar, where crankcases lie; a bare number is in Pa"
-        )
+    numbers = [("ambient", gas.ambient, _AMBIENT, "crankcases")]
+    if gas.indicator is not None:
+        for key in ("intake_pressure", "exhaust_pressure"):
+            number = getattr(gas.indicator, key)
+            numbers.append((f"indicator.{key}", number, _CYLINDER, "pressures of cylinders"))
+    for key in ("pressure", "motored", "crank_end"):
+        source = getattr(gas, key)
+        for each in source if isinstance(source, tuple) else (source,):
+            number = each.y[0] if isinstance(each, Table) and each.source == CONSTANT else each
+            if isinstance(number, float):
+                numbers.append((key, number, _CYLINDER, "pressures of cylinders"))
+    for key, number, (least, most), whose in numbers:
+        if number is None or (number == 0.0 and not gas.absolute):
+            continue
+        if not least <= abs(number) <= most:
+            yield (
+                f"gas.{key}: {number / BAR:.3g} bar is outside {least / BAR:g} to {most / BAR:g} "
+                f"bar, where {whose} lie; a bare number is in Pa"
+            )
 
 
 # Engines fire below 300 bar. A four-stroke engine that is only turned over, throttled, compresses
@@ -375,5 +393,5 @@ _Rules = tuple[Callable[..., Iterator[str]], ...]
 _OF_GEAR: _Rules = (_stroke, _bore, _masses, _light_masses, _rod_length, _offset, _fold, _rod)
 _OF_SCENE: _Rules = (
     *(_inertia, _shells, bores_overlap, shells_overlap),
-    *(_ambient, _peak, _loads, _forces),
+    *(_pressures, gaps, scatter, _peak, _loads, _forces),
 )

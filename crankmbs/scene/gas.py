@@ -22,7 +22,9 @@ from crankmbs.scene.schema import CsvFile, Float, folder_of, part, si, to_si
 from crankmbs.scene.tables import CylinderTable, Header, Table, tables_of
 from crankmbs.scene.units import BAR, DEGREE
 
-__all__ = ["AnyPressure", "Gas", "Indicator", "Polytrope", "tables_of"]
+__all__ = ["CONSTANT", "AnyPressure", "Gas", "Indicator", "Polytrope", "tables_of"]
+
+CONSTANT = "a constant"  # the source of its table, where it stands in a list
 
 Pressure = Annotated[Float, Gt(0), si("pressure")]
 
@@ -36,7 +38,8 @@ _COLUMNS = Header(
         "pressure_kgf_cm2": 98066.5,
     },
     "crank angles [rad], pressures [Pa]",
-    way_out='; columns = "..." with the pressure\'s heading reads a file that has other headings',
+    way_out='; columns = "..." with the pressure\'s heading reads a file that has other headings '
+    "or separators",
 )
 _FILE = CsvFile(_COLUMNS, numbered=True, others=', a list of them, or a pressure such as "1 bar"')
 
@@ -105,7 +108,7 @@ def _of_one(value: Any, info: ValidationInfo) -> Any:
     constant = _constant(value, info)
     if constant is not None:
         angles = tuple(0.5 * math.pi * k for k in range(2 * (info.data or {}).get("stroke", 4)))
-        return Table(angles, (constant,) * len(angles), "a constant")
+        return Table(angles, (constant,) * len(angles), CONSTANT)
     table = _table(value, info)
     if isinstance(table, CylinderTable):
         raise InputError(
@@ -255,7 +258,9 @@ class Gas:
 
     def _check_constants(self) -> None:
         if isinstance(self.pressure, float):
-            self._check_no_file("a constant")
+            self._check_no_file(
+                f"a constant of {self.pressure / BAR:g} bar (a bare number is in Pa)"
+            )
         for whose, source in (("", self.pressure), ("crank_end: ", self.crank_end)):
             if self.absolute and isinstance(source, float) and source < 0.0:
                 raise InputError(

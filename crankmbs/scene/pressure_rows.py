@@ -72,9 +72,12 @@ def check_rows(
         )
     widest = max([*(b - a for a, b in pairwise(angle)), count * period - span])
     if widest > period / 2.0 + SAME_ANGLE:
+        of_two = stroke == 4 and span <= 0.5 * period + SAME_ANGLE
+        way_out = "; give stroke = 2 where the rows are those of a two-stroke cycle"
         raise InputError(
             f"{file}: a gap of {widest / DEGREE:g} degrees without a row; the table must "
             f"span the cycle of {period / DEGREE:g} degrees with no gap above its half"
+            f"{way_out if of_two else ''}"
         )
     lowest = min(table.y)
     if absolute and lowest < 0.0:

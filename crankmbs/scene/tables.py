@@ -276,6 +276,8 @@ def _column(
 ) -> tuple[int, float]:
     names = [name for name in header if name in units]
     if len(names) != 1:
+        if not way_out and any(";" in name for name in header):
+            way_out = "; write it with commas between the columns and decimal points"
         raise InputError(
             f"file {path}: the header must name exactly one column {' | '.join(units)}{instead}, "
             f"with commas between the columns; {shown(','.join(header))} came{way_out}"
