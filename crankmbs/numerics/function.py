@@ -71,6 +71,11 @@ class Function:
         self.failure = ""
         self._function = function
 
+    @property
+    def called(self) -> str:
+        """Its name."""
+        return named(self._function)
+
     def angles_in(self, period: float) -> Array:
         """Its angles repeated over a period [rad] of which its own is a part."""
         part = self.period or 2.0 * math.pi
@@ -87,7 +92,7 @@ class Function:
             value, why = math.nan, f"raises {type(error).__name__}: {error}"
         if not math.isfinite(value):
             state = f"t = {t:.6g} s, theta = {theta:.6g} rad, omega = {omega:.6g} rad/s"
-            self.failure = f"{named(self._function)} {why or f'gives {value:g}'} at {state}"
+            self.failure = f"{self.called} {why or f'gives {value:g}'} at {state}"
             return math.nan
         return value
 
