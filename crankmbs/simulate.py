@@ -144,6 +144,9 @@ def functions_of(scene: Scene) -> list[tuple[str, Function]]:
 
 def why(status: int, message: str, functions: list[tuple[str, Function]]) -> str:
     """How a run ended, by its status and message; where it broke off after a function had failed,
-    what that did."""
+    what that did, in place of what it cost the solver."""
     failed = [f"{place}: {function.failure}" for place, function in functions if function.failure]
-    return message if status >= 0 or not failed else f"{message}; {failed[0]}"
+    if status >= 0 or not failed:
+        return message
+    stopped, _, _ = message.partition(": ")
+    return f"{stopped}: {failed[0]}" if stopped.startswith("stopped") else f"{message}; {failed[0]}"

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from crankmbs import Crank, Motion, Piston, Rod, Run, Scene, budget, load_scene, simulate
+from crankmbs import Crank, Gravity, Motion, Piston, Rod, Run, Scene, budget, load_scene, simulate
 from crankmbs.compare import (
     CAUSES,
     LECTURES,
@@ -20,6 +20,7 @@ from crankmbs.compare import (
 from crankmbs.errors import InputError
 from crankmbs.lecture import datum_shift
 from crankmbs.mechanics.geometry import close_loop
+from crankmbs.report.compared import advice
 from crankmbs.scene.shipped import shipped_scenes
 
 ROUNDING = 1e-12  # of the peak
@@ -289,3 +290,18 @@ def test_what_the_run_does_not_have_has_no_percent(yi):
     none = dataclasses.replace(found, simulated=0.0 * found.simulated, peak=1e-14)
     assert math.isnan(none.share(none.total))
     assert none.sentence() == "side thrust: the run has none, the lecture has"
+
+
+def test_the_speed_is_no_cure_where_it_is_constant():
+    """Slides by an offset: two causes of one size, none of which alone makes a formula right."""
+    scene = Scene(
+        crank=Crank(radius=0.08),
+        rod=Rod(length=0.24, mass=1.5, center_of_mass=0.085, inertia=0.011),
+        piston=Piston(mass=2.2, area=7.85e-3, offset=0.04),
+        gravity=Gravity(acceleration=9.81),
+        motion=Motion(speed=600.0 * math.pi / 30.0),
+        run=Run(until="2 rev"),
+    )
+    words = advice(budget(simulate(scene)))
+    assert words.startswith("no single refinement")
+    assert words.endswith(": take the closed form")

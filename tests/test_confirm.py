@@ -80,6 +80,14 @@ def test_a_shifted_parameter_is_seen(change: dict[str, float], least: float) -> 
     assert max(found.difference, found.at_states) > least
 
 
+def test_a_run_that_swings_says_over_what_it_was_compared() -> None:
+    swing = load_scene("coasting").with_(start__speed="0 rpm", run__until="0.5 s")
+    found = confirm(simulate(swing))
+    assert not found.whole
+    assert "joint force from " in found.sentence
+    assert "cycle" not in found.sentence
+
+
 def test_a_run_of_multibody_is_not_confirmed_by_itself() -> None:
     scene = load_scene("coasting").with_(run__until="0.01 s")
     with pytest.raises(InputError, match="not confirmed by itself"):

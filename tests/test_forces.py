@@ -10,8 +10,10 @@ from crankmbs import (
     Constant,
     Crank,
     Cylinder,
+    Gravity,
     InputError,
     Layout,
+    Load,
     Motion,
     Piston,
     Rod,
@@ -33,6 +35,7 @@ from crankmbs.scene.forces import (
     Spring,
     TravelTable,
 )
+from crankmbs.scene.parts import Friction
 from crankmbs.scene.python_force import Force
 from crankmbs.scene.tables import CylinderTable
 from crankmbs.scene.write import scene_files
@@ -212,6 +215,54 @@ def test_held_at_rest_until_a_load_exceeds_it():
         data["applied_force"].values[held, 0], 20.0 * t[held] / at, atol=1e-9
     )
     np.testing.assert_allclose(data["applied_force"].values[t > free + 1e-3, 0][:3], -100.0)
+
+
+@pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
+def test_a_function_with_its_kinks_costs_what_the_table_does(formulation):
+    """It turns back, swings and is held at rest by friction and by its jump with the velocity. A
+    step over time that passes a kink must not feel it, and a crank at rest not move to and fro."""
+    travel, ways = (0.0, 0.03, 0.03, 0.09), ((2.0, 2.0, -1.0, -1.0), (2.0, 2.0, 4.0, 4.0))
+    table = TravelTable(file=CylinderTable(travel, ways))
+
+    def push(t, cycle_angle, displacement, velocity):
+        return 2.0 if displacement < 0.03 else -1.0 if velocity > 0.0 else 4.0
+
+    force = Force(push, kink_displacements=(0.03,))
+    scene = replace(
+        machine(table, speed=2.0, until="20 s"),
+        friction=Friction(ring_force=1.5),
+        gravity=Gravity(acceleration=9.81, angle=-math.pi / 2),
+    )
+    of_table = simulate(scene, formulation=formulation)
+    result = simulate(scene.with_(force=(force,)), formulation=formulation)
+    assert result.message == of_table.message
+    assert result.message.startswith("at rest at")
+    assert list(result.events["kind"].values) == list(of_table.events["kind"].values)
+    for name in ("time", "crank_angle"):
+        ends = [float(each.data[name].values[-1]) for each in (result, of_table)]
+        errors = [each.data[name].error_estimate for each in (result, of_table)]
+        assert ends[0] == pytest.approx(ends[1], abs=sum(errors))
+    assert result.cost.evaluations < 8 * of_table.cost.evaluations
+
+
+def test_a_function_that_jumps_with_the_sense_holds_until_it_is_overcome():
+    """10 t against dry friction of 4: at rest until 0.4 s, then 5 s^2 / J = 0.05."""
+
+    def driven(t, theta, omega):
+        return 10.0 * t - 4.0 * ((omega > 0.0) - (omega < 0.0))
+
+    scene = Scene(
+        crank=Crank(radius=R, inertia=INERTIA),
+        rod=Rod(length=L, mass=0.0),
+        piston=Piston(mass=0.0),
+        start=Start(angle=0.3, speed=0.0),
+        torque=(Load(driven, kink_speeds=(0.0,)),),
+        run=Run(until="0.6 s", every="10 ms"),
+    )
+    data = simulate(scene).data
+    t = data["time"].values
+    speed = np.where(t > 0.4, 5.0 * (t - 0.4) ** 2 / INERTIA, 0.0)
+    np.testing.assert_allclose(data["crank_speed"].values, speed, atol=1e-6)
 
 
 def test_windows_in_time_at_a_prescribed_speed():

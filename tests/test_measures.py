@@ -236,7 +236,7 @@ def test_orders_of_uneven_samples_agree_with_those_of_even_ones(constant):
 @pytest.mark.parametrize(
     ("until", "name", "highest", "message"),
     [
-        ("1 rev", "crank_speed", 12.0, "whole cycle"),
+        ("1 rev", "crank_speed", 12.0, "run.until: .* one whole cycle, 2 rev .* turns 1 rev"),
         ("1 cycle", "crank_sped", 12.0, "no variable"),
         ("1 cycle", "crank_speed", 180.0, "from 0.5 to 100"),
         ("1 cycle", "crank_speed", 0.2, "from 0.5 to 100"),

@@ -177,6 +177,7 @@ def test_their_dataframes_have_errors_beside_values(short):
     assert len({reading_of(name, columns).column for name in table.index}) == len(table)
     table = state.to_dataframe()
     assert len(table) == len(state.readings)
+    assert "M_k = F_T r - m r^2 alpha" in table.attrs["remarks"][2]
     for reading in state.readings:
         scale, unit = displayed(reading.units)
         row = table.loc[f"{reading.quantity.replace('_', ' ')} [{unit}]"]

@@ -26,6 +26,7 @@ from crankmbs import (
 )
 from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.base import State
+from crankmbs.motion.ending import Ending
 from crankmbs.motion.minimal.advance import Effort, advance
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.minimal.segment import StepSizes
@@ -33,6 +34,7 @@ from crankmbs.motion.mode import begun
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics.function import Function
 from crankmbs.scene.write import scene_files
+from crankmbs.simulate import why
 
 FREE = ["crank_angle", "minimal"]
 PROPELLER = replace(load_scene("propeller"), run=Run(until="2 cycles", every="5 deg"))
@@ -254,12 +256,35 @@ def test_a_function_that_fails_is_a_result_with_a_sentence(function, said, formu
     assert float(result.data["time"][-1]) > 0.0
 
 
+def test_a_function_that_fails_is_the_cause_and_no_cap():
+    function = Function(is_nan)
+    function.number(0.0, 2.0, 1.0)
+    _, message = Ending.COSTLY.said(1.0, allowed=500_000)
+    said = why(-1, message, [("torque[1]", function)])
+    assert said.startswith("stopped at 57.2958 degrees: torque[1]: is_nan gives nan at t = 0 s")
+    assert "cost cap" not in said
+    assert why(-1, message, [("torque[1]", Function(math.sin))]) == message
+
+
+@pytest.mark.slow
+def test_a_jump_that_is_not_declared_is_named_where_it_costs_accuracy():
+    def jumps(t, theta, omega):
+        return 40.0 if theta % (2.0 * math.pi) < 1.0 else -40.0
+
+    message = simulate(wheel(Load(jumps), until="1 rev")).message
+    assert "reached" in message
+    assert "where jumps bends or jumps must be declared, by kink_angles" in message
+    declared = Load(jumps, kink_angles=(0.0, 1.0))
+    assert simulate(wheel(declared, until="1 rev")).message == "reached the end of the run"
+
+
 @pytest.mark.parametrize("formulation", FREE)
 def test_a_load_that_is_undefined_from_a_time_on_ends_the_run(formulation):
     load = Load(lambda t, theta, omega: math.nan if t > 0.1 else -1.0)
     result = simulate(replace(load_scene("coasting"), torque=(load,)), formulation=formulation)
     assert result.status == -1
     assert "gives nan at t = 0.1 s" in result.message
+    assert "no step" not in result.message
     assert float(result.data["time"][-1]) == pytest.approx(0.1, rel=1e-12)
 
 

@@ -155,6 +155,8 @@ def test_a_run_shorter_than_a_cycle_that_rests_is_not_periodic(force, kind):
     assert "at time [s]" in run.headings
     names = [name for name, *_ in whole.rows]
     assert not any("fluctuation" in name or "efficiency" in name for name in names)
+    means = [name for name in names if name.startswith("mean ")]
+    assert bool(means) == (kind != "reversal")  # over the angle turned: of swings it says nothing
     if kind != "reversal":
         rows = {name: value for name, value, _ in whole.rows}
         assert rows["drift of the speed over the whole run [rpm]"] == "0"

@@ -230,7 +230,7 @@ KEYS = (
             '"46 mm"',
             '"46 mm"\nradius = 1',
             "not valid TOML: Cannot overwrite a value (at line 6, column 11)"
-            "; crankmbs new NAME writes a scene to compare with",
+            "; radius is given twice in its table, leave one of the two out",
         ),
     ],
 )

@@ -137,10 +137,16 @@ def test_a_number_glued_to_a_slash_is_no_quantity():
         quantity("1/min", "angular speed")
 
 
-@pytest.mark.parametrize("text", ["1 cycle", "1 turn", "30 °", "30 mm", "30 degrees"])
+@pytest.mark.parametrize("text", ["1 cycle", "1 turn", "30 °C", "30 mm", "30 degrees"])
 def test_angle_takes_three_units(text):
     with pytest.raises(InputError, match=r"is no angle here: use rad, deg or rev$"):
         quantity(text, "angle")
+
+
+@pytest.mark.parametrize("text", ["30°", "30 °", "+30.0°"])
+def test_a_degree_sign_is_deg(text):
+    assert quantity(text, "angle") == quantity("30 deg", "angle")
+    assert quantity(text + "/s", "angular speed") == quantity("30 deg/s", "angular speed")
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,8 @@ __all__ = ["comparison", "report"]
 
 _FORCES = (
     "joint forces are magnitudes, the main bearing's that of the sum of all main journals; their "
-    'components are in motion.csv, at one angle by --at "60 deg"'
+    'components are in motion.csv, at one angle by --at "60 deg". Means of forces are over time, '
+    "of torques over the angle"
 )
 
 

@@ -60,6 +60,8 @@ class AtAngle:
 
     def to_dataframe(self) -> pd.DataFrame:
         """The readings as a pandas table in the units of its index: rpm, bar, mm, deg, N, N m.
+        ``attrs["remarks"]`` says which body each force acts on, and how F_v, F_oj, F_T, F_R and M_k
+        go together: M_k = F_T r - m r^2 alpha, with the rod's mass m at the crank pin.
 
         >>> state = simulate(load_scene("yi_diesel")).at("60 deg")
         >>> state.to_dataframe().loc["crank speed [rpm]", "value"].round(6).item()

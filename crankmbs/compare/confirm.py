@@ -89,7 +89,7 @@ class Confirmation:
         its begin; of a prescribed speed its equations alone. Empty where nothing moves
     states : differences of its accelerations and joint forces at states all over the run, under the
         run's load torque and forces from outside on the pistons
-    window [s] : begin and end of that period
+    window [s] : begin and end of that period; whole : whether the crank turns through all of it
     missing : what could not be compared, in sentences
     """
 
@@ -97,6 +97,7 @@ class Confirmation:
     states: tuple[Difference, ...]
     window: tuple[float, float]
     missing: tuple[str, ...] = ()
+    whole: bool = True
 
     def __repr__(self) -> str:
         return f"<Confirmation: {self.sentence}>"
@@ -129,10 +130,12 @@ class Confirmation:
                 f"exudyn's rigid bodies agree to {self.at_states:.0e} of the peak in acceleration "
                 f"and every joint force at states of the run; nothing was integrated"
             )
+        begin, end = self.window
+        part = "over the last cycle" if self.whole else f"from {begin:.4g} to {end:.4g} s"
         return (
             f"exudyn's rigid bodies {'agree' if self.holds else 'differ'} "
             f"{'to' if self.holds else 'by'} {self.difference:.0e} of the peak in motion and every "
-            f"joint force over the last cycle, with a stated error of {self.error:.0e}"
+            f"joint force {part}, with a stated error of {self.error:.0e}"
         )
 
 
@@ -158,13 +161,16 @@ def confirm(result: Result) -> Confirmation:
     period: tuple[Difference, ...] = ()
     window = math.nan, math.nan
     part = _moving(result)
+    turned = abs(part.turned) if part is not None else 0.0
+    whole = turned >= (1.0 - _NOTHING) * result.scene.period
     if part is None:
         missing.append("nothing moves at the end of the run: only states of rest were compared")
     else:
         try:
             period, window = _last_period(result, train, part)
         except FormulationError as error:
-            missing.append(f"the last cycle could not be integrated: {error}")
+            what = "last cycle" if whole else "end of the run"
+            missing.append(f"the {what} could not be integrated: {error}")
     if result.scene.motion is not None and result.scene.force:
         missing.append(
             "the forces from outside on the pistons are the run's, as the speed is prescribed: "
@@ -175,7 +181,7 @@ def confirm(result: Result) -> Confirmation:
             "what friction gives while it holds the crank at rest is the run's: a rigid body at "
             "rest does not determine it"
         )
-    return Confirmation(period, _at_states(result, train), window, tuple(missing))
+    return Confirmation(period, _at_states(result, train), window, tuple(missing), whole)
 
 
 def _moving(result: Result) -> Motion | None:

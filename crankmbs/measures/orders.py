@@ -11,7 +11,7 @@ import numpy as np
 from crankmbs.errors import InputError, shown
 from crankmbs.measures.estimate import ROUNDING
 from crankmbs.measures.nodes import nodes_of
-from crankmbs.measures.span import CYCLES, measured_span, passes_over
+from crankmbs.measures.span import CYCLES, TURNS_BACK, measured_span, passes_over
 from crankmbs.mechanics.peaks import peak
 from crankmbs.mechanics.variables import EVERY, SUMS
 from crankmbs.motion.motion import Motion
@@ -79,13 +79,18 @@ class Harmonics:
 
     def __init__(self, result: Result, highest: float = 12.0) -> None:
         window = measured_span(result)
+        reverses = "orders need a crank that turns one way; it reverses in the last cycle"
+        if window.kind == TURNS_BACK:
+            raise InputError(reverses)
         if window.kind not in CYCLES:
-            raise InputError("orders need one whole cycle; let the run last longer")
+            cycle, turned = (x / math.tau for x in (result.scene.period, abs(window.angle)))
+            raise InputError(
+                f"run.until: orders need one whole cycle, {cycle:g} rev of this machine; the crank "
+                f"turns {turned:.3g} rev; let the run last longer"
+            )
         self.passes = passes_over(result, window)
         if not self.passes.answer.turns_one_way:
-            raise InputError(
-                "orders need a crank that turns one way; it reverses in the last cycle"
-            )
+            raise InputError(reverses)
         revolutions = round(abs(window.angle) / (2.0 * math.pi))
         if not 1.0 / revolutions <= highest <= _HIGHEST:
             raise InputError(

@@ -111,6 +111,14 @@ class Measures:
         return highest * lowest > 0.0 and slow > _RESTS * fast
 
     @property
+    def turns_back(self) -> bool:
+        """Whether the crank turns both ways in the window: what is taken over the angle turned,
+        mean speeds and mean torques, then means nothing."""
+        highest, lowest = (peak.value.value for peak in self.peaks[-2:])
+        least, most = sorted((highest, -lowest))
+        return least > _RESTS * most
+
+    @property
     def piston_speed(self) -> tuple[Estimate, ...]:
         """Mean piston speed of each cylinder [m/s]: twice its stroke a revolution."""
         speed, error = self.mean_speed

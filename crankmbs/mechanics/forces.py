@@ -26,7 +26,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from crankmbs.mechanics.axes import axes_of, closed_loops, displacements, slides
-from crankmbs.mechanics.geometry import Loop, dead_centres, throw_angles
+from crankmbs.mechanics.geometry import (
+    Loop,
+    dead_centres,
+    lengths_of,
+    loop_at,
+    throw_angles,
+    top_position,
+)
 from crankmbs.mechanics.knots import KNOT, apart
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.cycle import tiled
@@ -269,8 +276,21 @@ class _OfTime(Function):
         times = (*python.times, *(law.over_time.knots if law.over_time else ()))
         speeds = () if law.python is None else (0.0,)
 
+        pistons = [
+            (cylinder.phase, top_position(*gear.shape), lengths_of(*gear.shape))
+            for cylinder, gear in zip(load.scene.cylinders, load.scene.running_gear, strict=True)
+        ]
+        acts_on = [pistons[k] for k in np.flatnonzero(load.pistons)]
+        over_time = None if law.over_time is None else law.over_time.by_number()
+
         def one(t: float, theta: float, omega: float) -> float:
-            return float(self._values([np.array([number]) for number in (t, theta, omega)])[0])
+            torque = 0.0
+            for phase, top, lengths in acts_on:
+                x, x_1 = loop_at(theta + phase, lengths)
+                force = 0.0 if over_time is None else over_time(t)
+                force += float(python.function(t, theta + phase, top - x, -x_1 * omega))
+                torque -= x_1 * force
+            return torque
 
         one.__name__ = named(python.function)
         super().__init__(one, times, tuple(angles), speeds, python.period)

@@ -26,6 +26,7 @@ __all__ = [
     "close_loops",
     "dead_centres",
     "lengths_of",
+    "loop_at",
     "throw_angles",
     "top_position",
 ]
@@ -113,6 +114,18 @@ def lengths_of(radius: Array | float, rod_length: Array | float, offset: Array |
     spare: Array | float = np.maximum(l - r - np.abs(e), 0.0) / l
     spare, far = (float(x) if np.ndim(x) == 0 else x for x in (spare, far))
     return Lengths(r, l, e, r / l, e / l, spare, far, not np.any(e))
+
+
+def loop_at(cycle_angle: float, lengths: Lengths) -> tuple[float, float]:
+    """Position [m] of one piston's pin and its slope over the angle [m/rad] at a cycle angle [rad]:
+    as `close_loop`, without arrays, for what steps over time.
+
+    >>> loop_at(0.0, lengths_of(0.1, 0.3, 0.0))[0]
+    0.4
+    """
+    sin, cos = np.array(math.sin(cycle_angle)), np.array(math.cos(cycle_angle))
+    loop = _closed(sin, cos, lengths)
+    return float(loop.x), float(loop.x_1)
 
 
 def close_loops(crank_angle: Array, phases: Array, lengths: Lengths) -> Loop:

@@ -91,8 +91,13 @@ class CrankTrain:
     @cached_property
     def has_functions(self) -> bool:
         """Whether a load is a function of Python, which may do what it does not declare."""
+        return bool(self.undeclared)
+
+    @property
+    def undeclared(self) -> list[str]:
+        """The names of the functions of Python among the loads."""
         functions = (load.parts.function for load in self.loads)
-        return any(not function.declared for function in functions if function is not None)
+        return [one.called for one in functions if one is not None and not one.declared]
 
     @cached_property
     def rubs(self) -> bool:

@@ -13,6 +13,10 @@ from crankmbs.numerics.arrays import Array
 __all__ = ["Function", "named"]
 
 _BESIDE = 1e-9  # of a speed: so near beside a jump
+_LEAST = 1e-150  # rad/s: so near beside rest, where a damper gives nothing and a jump all of it
+_HAIR = 1e-9  # rad: so near a kink in the angle, by rounding, it may be past it
+_EVERYWHERE = (-math.inf, math.inf)
+_AHEAD = (5.0, -10.0, 10.0, -5.0, 1.0)  # shares of five equally spaced values in the next one
 _NUDGE = 1e-6  # of the speed: of a difference quotient that Newton's method takes for a slope
 
 
@@ -23,6 +27,23 @@ def named(function: object) -> str:
     'sin'
     """
     return str(getattr(function, "__name__", type(function).__name__))
+
+
+def _beside(speed: float) -> float:
+    """How far from a speed [rad/s] it is beside a jump there."""
+    return _BESIDE * max(abs(speed), 1.0) if speed else _LEAST
+
+
+def _continued(f: Callable[[float], float], x: float, low: float, high: float) -> float:
+    """A function between two bounds; a little beyond, the polynomial through five of its values
+    inside; far beyond the last of them."""
+    edge = min(max(x, low), high)
+    beyond = x - edge
+    if beyond == 0.0:
+        return f(x)
+    if abs(beyond) > 0.2 * (high - low):
+        return f(edge)
+    return sum(share * f(edge - k * beyond) for k, share in enumerate(_AHEAD))
 
 
 class Function:
@@ -50,6 +71,11 @@ class Function:
         self.failure = ""
         self._function = function
 
+    @property
+    def called(self) -> str:
+        """Its name."""
+        return named(self._function)
+
     def angles_in(self, period: float) -> Array:
         """Its angles repeated over a period [rad] of which its own is a part."""
         part = self.period or 2.0 * math.pi
@@ -66,7 +92,7 @@ class Function:
             value, why = math.nan, f"raises {type(error).__name__}: {error}"
         if not math.isfinite(value):
             state = f"t = {t:.6g} s, theta = {theta:.6g} rad, omega = {omega:.6g} rad/s"
-            self.failure = f"{named(self._function)} {why or f'gives {value:g}'} at {state}"
+            self.failure = f"{self.called} {why or f'gives {value:g}'} at {state}"
             return math.nan
         return value
 
@@ -86,8 +112,37 @@ class Function:
 
     def beside(self, t: float, theta: float, omega: float, side: float) -> float:
         """Its value, and at a speed where it may jump that of the side (a sign) of this speed."""
-        at_kink = omega in self.speeds
-        return self.number(t, theta, omega + side * _BESIDE * max(abs(omega), 1.0) * at_kink)
+        if omega not in self.speeds:
+            return self.number(t, theta, omega)
+        return self.number(t, theta, omega + side * _beside(omega))
+
+    def continued(
+        self,
+        state: tuple[float, float, float],
+        t_end: float,
+        angles: tuple[float, float],
+        speeds: tuple[float, float],
+    ) -> float:
+        """Its value at a state (time, angle, speed); where that lies beyond a kink, what its values
+        before make of it: a step that passes the kink, and is cut there, then sees none.
+
+        t_end, angles, speeds : between which kinks its piece lies, [s], [rad], [rad/s]
+
+        >>> step = Function(lambda t, theta, omega: float(theta >= 1.0), angles=(1.0,))
+        >>> step.continued((0.0, 1.001, 5.0), math.inf, (0.0, 1.0), (0.0, math.inf))
+        0.0
+        """
+        t, theta, omega = state
+        t = t if t < t_end else math.nextafter(t_end, -math.inf)
+        low, high = angles if self.angles else _EVERYWHERE
+        hair = min(_HAIR, 0.25 * (high - low))
+        least, most = speeds if self.speeds else _EVERYWHERE
+        least, most = least + _beside(least), most - _beside(most)
+
+        def at(angle: float) -> float:
+            return _continued(lambda speed: self.number(t, angle, speed), omega, least, most)
+
+        return _continued(at, theta, low + hair, high - hair)
 
     def slope(self, t: Array, theta: Array, omega: Array) -> Array:
         """About its derivative in the speed."""

@@ -108,9 +108,14 @@ def advice(budget: Budget) -> str:
     cures = [cause for cause in worst.causes if cause.name in _REMEDIES]
     best = min(cures, key=worst.without, default=None)
     if best is None or worst.without(best) > _HELPS * error:
+        changes = any(
+            cause.name == "constant speed" and abs(worst.share(cause)) >= _LEAST
+            for cause in worst.causes
+        )
+        at_speed = " at the crank's own speed and acceleration" if changes else ""
         return (
             f"no single refinement removes {whose}, which is off by {digits(error, most=3)} %: "
-            "take the closed form at the crank's own speed and acceleration"
+            f"take the closed form{at_speed}"
         )
     left = worst.without(best)
     of_user = best.name == "series" and not worst.is_lecture

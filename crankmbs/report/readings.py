@@ -78,7 +78,7 @@ def reading_remarks(state: AtAngle) -> list[str]:
 def readings_frame(state: AtAngle) -> pd.DataFrame:
     """Every quantity at one crank angle, in the units that people read."""
     many = len(state.scene.cylinders)
-    return _frame(
+    frame = _frame(
         (
             labelled(reading.words, reading.cylinder, many, reading.units),
             reading.units,
@@ -87,6 +87,8 @@ def readings_frame(state: AtAngle) -> pd.DataFrame:
         )
         for reading in state.readings
     )
+    frame.attrs["remarks"] = reading_remarks(state)
+    return frame
 
 
 def measures_frame(measures: Measures) -> pd.DataFrame:

@@ -153,12 +153,17 @@ def not_periodic(measures: Measures) -> str:
 
 
 def meaningless(measures: Measures) -> set[str]:
-    """Names of measures that mean nothing over a window, where the speed is not periodic.
+    """Names of measures that mean nothing over a window, where the speed is not periodic or the
+    crank turns back.
 
     >>> meaningless(simulate(load_scene("propeller")).measures())
     set()
     """
-    return set() if measures.steady else {"fluctuation", "mechanical_efficiency"}
+    if measures.steady:
+        return set()
+    over_angle = {"mean_speed", "piston_speed", "crank_torque", "external_torque"}
+    unsteady = {"fluctuation", "mechanical_efficiency"}
+    return unsteady | over_angle if measures.turns_back else unsteady
 
 
 def measure_rows(measures: Measures) -> list[list[str]]:

@@ -25,8 +25,8 @@ class Force(OfFunction, PistonForce):
 
     kink_times [s], kink_angles [rad], kink_displacements [m] : where it bends or jumps, the angles
         every ``period``, without one every revolution; that it jumps with the sense of the
-        velocity is always allowed for. What is not declared takes finer cells, and costs
-        accuracy that the stated errors know of
+        velocity is always allowed for. What is not declared costs accuracy, which the
+        stated errors know of unless it is a pulse that lies between the solver's nodes
     period [rad] : declares that it does not depend on t and repeats over the cycle angle; any
         multiple of half a revolution, or a whole part of two revolutions
 

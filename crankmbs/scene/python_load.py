@@ -113,8 +113,8 @@ class Load(OfFunction, Torque):
     speed [rad/s], three floats in, one out; it must be pure.
 
     kink_times [s], kink_angles [rad], kink_speeds [rad/s] : where it bends or jumps, the angles
-        every ``period``, without one every revolution; what is not declared takes finer
-        cells, and costs accuracy that the stated errors know of
+        every ``period``, without one every revolution; what is not declared costs accuracy,
+        which the stated errors know of unless it is a pulse that lies between the solver's nodes
     period [rad] : declares that it does not depend on t and repeats over the crank angle; any
         multiple of half a revolution, or a whole part of two revolutions
 

@@ -72,7 +72,11 @@ def parse_scene(text: str, path: Path) -> Scene:
     try:
         raw: dict[str, Any] = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # a number of 5000 digits is a ValueError
-        way_out = _in_quotes(text, error) or "crankmbs new NAME writes a scene to compare with"
+        way_out = (
+            _in_quotes(text, error)
+            or _twice(text, error)
+            or "crankmbs new NAME writes a scene to compare with"
+        )
         raise SceneError(f"{path}: not valid TOML: {error}; {way_out}") from None
     if {"motion", "start"} <= raw.keys():  # before what may be missing in either
         raise SceneError(f"{path}: {MOTION_OR_START}; both came")
@@ -98,6 +102,13 @@ def _in_quotes(text: str, error: Exception) -> str:
     if not bare:
         return ""
     return f"a quantity with a unit is written in quotes, here {shown(bare[1].strip())}"
+
+
+def _twice(text: str, error: Exception) -> str:
+    """The way out where a key is given a second time."""
+    line = re.search(r"Cannot overwrite a value \(at line (\d+),", str(error))
+    key, given, _ = text.split("\n")[int(line[1]) - 1].partition("=") if line else ("", "", "")
+    return f"{key.strip()} is given twice in its table, leave one of the two out" if given else ""
 
 
 _BARE_QUANTITY = re.compile(r"=\s*([+-]?[0-9][0-9.eE+-]*\s*[^\W\d_][^#,}\"']*)")

@@ -88,6 +88,8 @@ def quantity(text: str, dimension: str) -> float:
 
     >>> quantity("46 mm", "length")
     0.046
+    >>> quantity("60\N{DEGREE SIGN}", "angle") == quantity("60 deg", "angle")
+    True
     """
     number, unit = _split(text, dimension)
     listed = _LISTED.get(dimension)
@@ -145,7 +147,7 @@ def check_size(value: float, dimension: str, written: object) -> None:
 
 
 def _split(text: str, dimension: str) -> tuple[float, str]:
-    match = _NUMBER_AND_UNIT.fullmatch(text)
+    match = _NUMBER_AND_UNIT.fullmatch(text.replace("\N{DEGREE SIGN}", " deg"))
     if match is None:
         raise InputError(
             f"{shown(text)} is not a quantity: write one number and one unit, such as "

@@ -122,6 +122,12 @@ def run(
     solution = replace(best.solution, keep=keep)
     if best.relative_error > rtol and solution.status >= 0:
         text = f"asked for {rtol:.0e}, reached {best.relative_error:.0e}"
+        if functions:
+            names = " and ".join(dict.fromkeys(train.undeclared))
+            text += (
+                f"; where {names} bends or jumps must be declared, by kink_angles, kink_times and "
+                "what else it may depend on"
+            )
         solution = replace(solution, message=f"{solution.message}; {text}")
     return replace(best, solution=solution, motion=partial(Passes, first, tuple(others), share))
 

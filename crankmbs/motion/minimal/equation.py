@@ -52,7 +52,12 @@ class Equation:
         return b.c0 + b.ct * t + (b.c1 + b.c2 * omega) * omega
 
     def _of_functions(self, t: float, theta: float, omega: float) -> float:
-        return sum(function.number(t, theta, omega) for function in self.branch.functions)
+        branch, state = self.branch, (t, theta, omega)
+        speeds = branch.omega_low, branch.omega_high
+        return sum(
+            function.continued(state, branch.t_end, self.piece[:2], speeds)
+            for function in branch.functions
+        )
 
     def is_stiff(self, state: State, least: float) -> bool:
         """Whether the loads damp the speed a thousand times while the crank turns 5 degrees, and
@@ -89,12 +94,16 @@ class Equation:
         at_rest = begin.omega == end.omega == 0.0 and begin.theta == end.theta
         return at_rest and not self.changes
 
-    def pull(self, state: State) -> float:
-        """Torque of gas, gravity, friction and loads at a state [N m]."""
+    def pull(self, state: State, side: float = 0.0) -> float:
+        """Torque of gas, gravity, friction and loads at a state [N m].
+
+        side : the sign of a speed that is about to be: where a function jumps, that side of it
+        """
         time, theta, omega = state[:3]
         _, _, torque, drag = self.piece(theta - self.piece.middle)
         torque += self.outside(time, omega) - drag * omega
-        return torque + self._of_functions(time, theta, omega)
+        functions = self.branch.functions
+        return torque + sum(function.beside(time, theta, omega, side) for function in functions)
 
     def kinetic(self, theta: float, omega: float) -> float:
         """Kinetic energy [J]."""
@@ -122,16 +131,17 @@ def enter(reduced: Reduced, state: State, scale: float) -> Equation | Ending:
     for sense in (1.0, -1.0):
         branch = branch_of(torques, state.time, 0.0, rising=sense > 0.0, phases=phases)
         equation = Equation(pieces, pieces.around(state.theta, sense), branch.plus(state.mode.held))
-        pull = equation.pull(state)
+        pull = equation.pull(state, sense)
         if pull * sense > _BALANCED * scale:
             return equation
         resisted = resisted or pull * sense < -_BALANCED * scale
         sides.append(equation)
     rubs = reduced.train.rubs
     if resisted:
-        waits = bool(phase_ends(torques, phases)[0])
-        until = _until(sides, state, scale) if rubs else sides[0].branch.t_end
-        if waits or (rubs and until < math.inf):
+        waits, until = bool(phase_ends(torques, phases)[0]), sides[0].branch.t_end
+        ends = rubs or bool(sides[0].branch.functions)  # what holds it, by what grows over time
+        until = _until(sides, state, scale) if ends else until
+        if waits or (ends and until < math.inf):
             return replace(sides[0], holds=True, until=until)
         return Ending.STICKS if rubs else Ending.HELD
     if sides[0].is_balanced(state, scale):
@@ -146,7 +156,7 @@ def _until(sides: list[Equation], state: State, scale: float) -> float:
     line over time is met where it is, a function of Python where it is first seen to be."""
     until = sides[0].branch.t_end
     for equation, sense in zip(sides, (1.0, -1.0), strict=True):
-        missing, rate = 2.0 * _BALANCED * scale - sense * equation.pull(state), sense
+        missing, rate = 2.0 * _BALANCED * scale - sense * equation.pull(state, sense), sense
         rate *= equation.branch.ct
         if rate > 0.0 and not equation.branch.functions:
             until = min(until, state.time + missing / rate)
@@ -159,7 +169,7 @@ def _first_pull(equation: Equation, sense: float, state: State, least: float) ->
     """When [s] a function of time first turns a crank at rest; infinite where it is not seen to."""
 
     def turns(t: float) -> bool:
-        return sense * equation.pull(state._replace(time=t)) > least
+        return sense * equation.pull(state._replace(time=t), sense) > least
 
     end = min(equation.branch.t_end, state.time + _LONGEST)
     low = state.time
