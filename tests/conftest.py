@@ -1,5 +1,7 @@
 """Fixtures of several test files, and which tests of slow files run by default."""
 
+import gc
+
 import pytest
 from browser import started
 from guards import COLLECTED, quick_guards
@@ -9,6 +11,16 @@ from scene_texts import GAS
 
 from crankmbs.errors import SceneError
 from crankmbs.scene.read import parse_scene
+
+
+def pytest_collection(session):
+    """What is collected stays to the end: looking for what of it can go takes seconds."""
+    gc.disable()
+
+
+def pytest_collection_finish(session):
+    gc.freeze()
+    gc.enable()
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -35,15 +47,15 @@ def read(tmp_path):
     return parse
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def browser():
-    """A browser for the visits of a test file."""
+    """A browser for all visits of one process, each of them in a context of its own."""
     with started() as opened:
         yield opened
 
 
 @pytest.fixture(scope="module")
-def page():
+def page(browser):
     """The page's engine in a browser."""
-    with engine() as opened:
+    with engine(browser) as opened:
         yield opened

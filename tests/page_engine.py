@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from browser import started, visiting
+from browser import visiting
 
 from crankmbs.mechanics.peaks import peak
 from crankmbs.mechanics.variables import EVERY, SUMS
@@ -23,9 +23,9 @@ _ASK = """([name, text]) =>
 
 
 @contextmanager
-def engine():
-    """The engine in chromium; asked by the name of what it answers and its arguments."""
-    with started() as opened, visiting(opened, offline=True) as visit:
+def engine(browser):
+    """The engine in a browser; asked by the name of what it answers and its arguments."""
+    with visiting(browser, offline=True) as visit:
         visit.page.evaluate(f"() => {{ window.answers = {joined(ANSWERS)} }}")
         start = "(text) => { window.engine = answers.engineOf(JSON.parse(text)) }"
         visit.page.evaluate(start, encoded(rules()))

@@ -128,6 +128,20 @@ def even_cells():
     return running("coasting", until, layout=layout, gravity=MACHINE["gravity"])
 
 
+def like_cylinders(**changes):
+    """At whole cells from one another."""
+    scene = running("yi_diesel_free", Extent(value=1.2, unit="cycle"))
+    cylinders = (Cylinder(phase=0.0), Cylinder(phase=math.pi))
+    return replace(scene, layout=Layout(cylinders=cylinders), **changes)
+
+
+def unlike_pressures():
+    angles = (0.0, math.pi, 2.0 * math.pi, 3.0 * math.pi)
+    values = ((1e5, 3e6, 2e5, 1e5), (1e5, 1e6, 5e5, 2e5))
+    gas = load_scene("yi_diesel_free").gas
+    return like_cylinders(gas=replace(gas, pressure=CylinderTable(angles, values, "each its own")))
+
+
 def both_ends():
     """Gas below the pistons too, over as long again."""
     scene = running("yi_diesel_free", Extent(value=0.06, unit="s"), **MACHINE)
@@ -195,6 +209,8 @@ GUARDS = {
     "short rod": short_rod(),
     "several cycles": several_cycles(),
     "even cells": even_cells(),
+    "unlike pressures": unlike_pressures(),
+    "pushed alone": like_cylinders(force=(ConstantForce(force=-150.0, cylinder=1),)),
     "affine": running("v_twin", "settled"),
     "rings": rubbing("v_twin", "settled", replace(RUBBING, viscous=0.0), **MACHINE),
     "rubbing": rubbing("propeller", Extent(value=1.2, unit="cycle"), RUBBING),
@@ -259,7 +275,8 @@ def tasks(angles):
     scenes |= {name: GUARDS[name] for name in ("started", "affine", "both ends")}
     for name, scene in scenes.items():
         found[f"carried {name}"] = "carried", {"scene": exported(scene), "shape": shape}
-    for name in ("affine", "started", "pushed", "even cells"):
+    names = ("affine", "started", "pushed", "even cells", "unlike pressures", "pushed alone")
+    for name in names:
         asked = {"scene": longer(GUARDS[name]), "angles": angles[name][::3]}
         found[f"dragged {name}"] = "dragged", asked
     around = np.linspace(0.2, 12.0, 24)

@@ -11,12 +11,14 @@ from crankmbs.batch.machine import machine_of
 from crankmbs.batch.rows import rows_of
 from crankmbs.batch.serves import loads_of
 from crankmbs.batch.solve import solved_together
+from crankmbs.scene.bearings import Bearings, Shell
 from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, Viscous
-from crankmbs.scene.parts import Cylinder, Friction
+from crankmbs.scene.parts import Cylinder, Friction, Gravity
 from crankmbs.scene.tables import Table
 from crankmbs.sweep.block import Job, solved
 from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.scenes import scene_of
+from validation.random_bearings import random_bearings
 from validation.random_settled import random_settled
 
 pytestmark = pytest.mark.slow
@@ -31,9 +33,28 @@ def settling(name, **changes):
 
 
 SHIPPED = [settling(name) for name in ("propeller", "yi_diesel_free", "v_twin")]
+SHELL = Shell(diameter="50 mm", width="20 mm")
+ON_ONE_PIN = tuple(
+    replace(cylinder, position=place, throw=1)
+    for cylinder, place in zip(SHIPPED[2].cylinders, ("0 mm", "30 mm"), strict=True)
+)
+WITH_JOURNALS = [
+    settling("propeller", bearings=Bearings(crank_pin=SHELL), friction=Friction(ring_force=40.0)),
+    settling(
+        "yi_diesel_free",
+        layout__spacing="0.1 m",
+        bearings=Bearings(throw_unbalance=4 * ("-9 kg mm",)),
+    ),
+    settling(
+        "v_twin",
+        layout__cylinders=ON_ONE_PIN,
+        gravity=Gravity(acceleration="9.81 m/s^2"),
+        bearings=Bearings(main_journal=SHELL, journal_positions=("-50 mm", "80 mm")),
+    ),
+]
 
 
-@pytest.mark.parametrize("scene", SHIPPED, ids=lambda scene: scene.title[:20])
+@pytest.mark.parametrize("scene", SHIPPED + WITH_JOURNALS, ids=lambda scene: scene.title[:20])
 def test_shipped_scenes_agree(scene):
     (rows,) = rows_of([scene])
     alone, message = by_hand(scene)
@@ -61,6 +82,7 @@ def test_what_a_fitted_diagram_errs_counts():
 @pytest.mark.parametrize("seed", SEEDS)
 def test_random_scenes_agree(seed):
     scene = random_settled(seed)
+    scene = random_bearings(scene, seed) if seed % 2 else scene
     scene = replace(scene, run=replace(scene.run, every=None, rtol=1e-7))
     assert (loads_of(scene) is None) == (seed in LEFT)
     found = rows_of([scene])

@@ -22,6 +22,11 @@ def start():
     return simulate(replace(scene, fuel=fuel, run=Run(until="0.8 s", every="2 deg")))
 
 
+@pytest.fixture(scope="module")
+def stop():
+    return simulate(load_scene("run_down"))
+
+
 def words(ax):
     return [text.get_text() for text in ax.texts]
 
@@ -42,19 +47,18 @@ def test_a_start_is_marked_where_it_happens(start):
     assert np.array_equal(loads.get_ydata()[sampled], start.sampled("external_torque"))
 
 
-def test_a_crank_that_turns_back_is_drawn_between_its_samples():
+def test_a_crank_that_turns_back_is_drawn_between_its_samples(stop):
     """Samples one degree apart lie up to 26 ms apart, and pass over the peak of the pressure."""
-    result = simulate(load_scene("run_down"))
-    reversal = result.event_table.values("time")[-5]
-    peak = float(result.interp(time=[reversal]).gas_pressure.values[0].max()) * 1e-5
-    over_time, _ = plot(result, "pressure").axes
+    reversal = stop.event_table.values("time")[-5]
+    peak = float(stop.interp(time=[reversal]).gas_pressure.values[0].max()) * 1e-5
+    over_time, _ = plot(stop, "pressure").axes
     drawn = [line.get_xydata() for line in over_time.lines]
     near = [xy[np.abs(xy[:, 0] - reversal) < 0.01, 1] for xy in drawn]
     assert max(values.max() for values in near) == pytest.approx(peak, rel=2e-3)
-    for axes in (over_time, *plot(result, "speed").axes, *plot(result, "transient").axes):
+    for axes in (over_time, *plot(stop, "speed").axes, *plot(stop, "transient").axes):
         time = axes.lines[0].get_xdata()
         assert np.max(np.diff(time)) <= np.ptp(time) / 500.0 * (1.0 + 1e-9)
-        assert set(result.sampled("time")[-100:]) <= set(time)
+        assert set(stop.sampled("time")[-100:]) <= set(time)
 
 
 def test_an_event_at_the_begin_of_the_first_cycle_is_in_it(start):
@@ -80,12 +84,11 @@ def test_what_happens_after_many_reversals_is_marked():
     assert len(speed.lines) == 2 + min(len(marks(result)), 24)  # the speed, its zero, the marks
 
 
-def test_a_crank_that_turns_back_has_its_last_firing_and_its_rest_marked():
-    result = simulate(load_scene("run_down"))
-    speed, *_ = plot(result, "transient").axes
+def test_a_crank_that_turns_back_has_its_last_firing_and_its_rest_marked(stop):
+    speed, *_ = plot(stop, "transient").axes
     assert {"last firing", "reversal, 6 times", "rest"} == set(words(speed))
     times = [line.get_xdata()[0] for line in speed.lines[2:]]
-    assert times == [mark.time for mark in marks(result)]
+    assert times == [mark.time for mark in marks(stop)]
 
 
 def test_the_largest_loads_of_the_whole_run_are_marked(start):
@@ -111,10 +114,9 @@ def test_loads_of_a_speed_that_drifts_are_drawn_over_the_whole_run(tmp_path):
     assert "transient.png" in [file.name for file in save_figures(result, tmp_path)]
 
 
-def test_cycles_are_steps_and_events_stand_in_the_cycle_that_holds_them():
-    result = simulate(load_scene("run_down"))
-    speeds, pressures = plot(result, "cycles").axes
-    cycles = result.cycle_table
+def test_cycles_are_steps_and_events_stand_in_the_cycle_that_holds_them(stop):
+    speeds, pressures = plot(stop, "cycles").axes
+    cycles = stop.cycle_table
     count = cycles.length
     imep = cycles.values("imep")[:, 0]
     number, drawn = pressures.lines[0].get_xydata().T
@@ -123,7 +125,7 @@ def test_cycles_are_steps_and_events_stand_in_the_cycle_that_holds_them():
     assert drawn == pytest.approx(np.repeat(imep * 1e-5, 2))
     (last,) = speeds.texts  # no cycle holds the reversals and the rest
     assert last.get_text() == "last firing"
-    (time,) = (mark.time for mark in marks(result) if mark.words == "last firing")
+    (time,) = (mark.time for mark in marks(stop) if mark.words == "last firing")
     begin, duration = cycles.values("time")[2], cycles.values("duration")[2]
     assert last.xy[0] == 2.5 + (time - begin) / duration
     assert speeds.lines[0].get_color() not in [line.get_color() for line in pressures.lines]

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from page_scenes import refused
 
 from crankmbs import (
     Extent,
@@ -154,19 +153,21 @@ def test_it_swings_as_wide_as_it_can_until_it_is_refused(viscous):
     """Lighter and lighter: what is given has the mean speed and repeats itself."""
     friction = Friction(ring_force=40.0, viscous=viscous)
     bare = replace(DIESEL, friction=friction, crank=replace(DIESEL.crank, mass=0.0))
-    given, swings = 0, []
+    given, swings, sentences = 0, [], []
     for inertia in (0.003, 0.001, 5e-4, 2e-4, 1e-4, 0.0):
         scene = replace(bare, crank=replace(bare.crank, inertia=inertia))
-        if sentence := refused(freed, scene):
-            assert "comes near rest in every cycle" in sentence
+        try:
+            found = freed(scene)
+        except InputError as error:
+            sentences.append(str(error))
             continue
-        found = freed(scene)
         data = whole(found)
         given += 1
         assert data.crank_speed.values[-1] == pytest.approx(found.start.speed, rel=1e-9)
         mean = DIESEL.period / float(data.time[-1])
         assert mean == pytest.approx(DIESEL.motion.speed, rel=1e-9)
         swings.append(np.ptp(simulate(found).data.crank_speed.values) / mean)
+    assert all("comes near rest in every cycle" in sentence for sentence in sentences)
     assert swings == sorted(swings)
     assert swings[-1] > 1.0
     assert given == 6 if viscous else 1 < given < 6

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -30,10 +31,14 @@ def scene(name: str) -> Scene:
     return load_scene(name).with_(run__until=LENGTHS[name], run__every="90 deg")
 
 
+@cache
+def solved(name: str, formulation: str | None = None) -> Result:
+    return simulate(scene(name), formulation=formulation)
+
+
 @pytest.mark.parametrize("name", LENGTHS)
 def test_between_samples_it_errs_by_no_more_than_it_states(name: str) -> None:
-    exact = simulate(scene(name)).passes.answer
-    passes = simulate(scene(name), formulation="multibody").passes
+    exact, passes = solved(name).passes.answer, solved(name, "multibody").passes
     time = np.linspace(exact.begin, exact.end, 2345)[1:-1]
     answer, *checks = (each.at(time, in_time=True) for each in (passes.answer, *passes.checks))
     true = exact.at(time, in_time=True)
@@ -47,7 +52,7 @@ def test_between_samples_it_errs_by_no_more_than_it_states(name: str) -> None:
 
 @pytest.mark.parametrize("name", LENGTHS)
 def test_its_measures_and_cycles_are_those_of_the_exact_run(name: str) -> None:
-    exact, result = (simulate(scene(name), formulation=each) for each in (None, "multibody"))
+    exact, result = solved(name), solved(name, "multibody")
     for found, true in (
         (result.measures().mean_speed, exact.measures().mean_speed),
         (result.measures().fluctuation, exact.measures().fluctuation),
@@ -74,7 +79,7 @@ def test_beside_a_jump_of_a_load_its_torque_is_that_of_its_side(jump: float) -> 
 
 @pytest.mark.parametrize("name", ["misfire", "compressor"])
 def test_saved_and_sent_it_is_the_same(name: str, tmp_path: Path) -> None:
-    result = simulate(scene(name), formulation="multibody")
+    result = solved(name, "multibody")
     time = np.linspace(0.0, result.passes.answer.end, 99)[1:]
     there = result.passes.answer.at(time, in_time=True)
     for again in (Result.load(result.save(tmp_path)), pickle.loads(pickle.dumps(result))):

@@ -1,15 +1,19 @@
 """What follows from a frozen object is made once, and stays with that very object."""
 
 import copy
+import gc
 import pickle
+import weakref
 from dataclasses import replace
 
 import pytest
 
-from crankmbs import load_scene
+from crankmbs import load_scene, simulate
+from crankmbs.measures.span import measured_span, passes_over
 from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.free.passes import first_grid
 from crankmbs.numerics.once import once
+from crankmbs.sweep import block
 
 
 def test_a_scene_has_one_crank_train_and_that_one_grid_for_each_order():
@@ -45,3 +49,35 @@ def test_what_fails_is_asked_again():
         with pytest.raises(ValueError, match="no"):
             never(train)
     assert len(asked) == 2
+
+
+@pytest.fixture
+def no_collector():
+    gc.collect()
+    gc.disable()
+    yield
+    gc.enable()
+
+
+def test_a_result_leaves_the_memory_with_its_name(no_collector):
+    """What measures are read from is large, and a circle of it would stay."""
+    result = simulate(load_scene("propeller"))
+    result.measures()
+    passes = passes_over(result, measured_span(result))
+    motions = [weakref.ref(motion) for motion in (passes.answer, *passes.checks)]
+    del result, passes
+    assert [motion() for motion in motions] == [None, None]
+
+
+def test_a_case_of_a_sweep_leaves_the_memory_when_it_is_done(no_collector, monkeypatch):
+    seen = []
+
+    def watched(scene):
+        seen.append(weakref.ref(first_grid(crank_train(scene), scene.run.rtol)))
+        return simulate(scene)
+
+    monkeypatch.setattr(block, "simulate", watched)
+    scene = load_scene("v_twin")
+    solved = block.solved(block.Job(scene, ("crank.inertia",), ((0.1,), (0.2,)), True))
+    assert solved.status.tolist() == [0, 0]
+    assert [grid() for grid in seen] == [None, None]

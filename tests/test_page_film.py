@@ -42,9 +42,9 @@ def runs():
 
 
 @pytest.fixture(scope="module")
-def replayed(films):
+def replayed(browser, films):
     """What the page has of a film at times [s], by its own script."""
-    with engine() as opened:
+    with engine(browser) as opened:
         yield lambda name, times: opened.page.evaluate(
             REPLAYED, [joined(ANSWERS), encoded({"film": films[name], "times": times})]
         )

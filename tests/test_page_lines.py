@@ -24,8 +24,8 @@ LINES = {
 
 
 @pytest.fixture(scope="module")
-def page():
-    with engine() as opened:
+def page(browser):
+    with engine(browser) as opened:
         yield opened.page
 
 

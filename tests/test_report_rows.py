@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from crankmbs import (
@@ -25,6 +26,7 @@ from crankmbs.report.rows import (
     FORCE_HEADINGS,
     cycle_remark,
     measure_rows,
+    measure_tables,
     peak_rows,
     tables,
     unsteady,
@@ -188,3 +190,22 @@ def test_each_end_and_each_stroke_has_its_row():
     for number, gear in enumerate(unlike.running_gear, start=1):
         value = float(found[f"mean piston speed, cylinder {number} [m/s]"])
         assert value == pytest.approx(gear.stroke * speed / math.pi, rel=1e-5)
+
+
+def test_of_cycles_that_differ_it_is_said_in_which_a_peak_is():
+    degrees = np.array([0.0, 340.0, 370.0, 400.0, 720.0])
+    rows = [
+        (720.0 * k + degrees[:-1], (1e5, 1e5, top, 1e5)) for k, top in enumerate((3e6, 5e6, 4e6))
+    ]
+    angles = np.radians(np.concatenate([*(angle for angle, _ in rows), [2160.0]]))
+    pressures = np.concatenate([*(each for _, each in rows), [1e5]])
+    gas = Gas(
+        pressure=Table(tuple(angles), tuple(pressures)), absolute=False, stroke=4, cycles="sequence"
+    )
+    scene = load_scene("propeller").with_(run__until="6 cycles", run__every="none")
+    scene = replace(scene, gas=gas, start=None, torque=(), motion=Motion(speed=100.0))
+    _, table = measure_tables(simulate(scene).measures())
+    pressure = next(row for row in table.rows if row[0].startswith("gauge pressure"))
+    assert dict(zip(table.headings, pressure, strict=True))["cycle"] == "5"
+    _, table = measure_tables(simulate(load_scene("propeller")).measures())
+    assert "cycle" not in table.headings

@@ -12,6 +12,7 @@ import numpy as np
 from crankmbs.batch.balances import Balances, balances
 from crankmbs.batch.lectures import Deviations
 from crankmbs.batch.peaks import sparse_nodes
+from crankmbs.measures.joints import joints_of
 from crankmbs.mechanics.geometry import close_loop
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.motion.crank_angle.grid import grid_of
@@ -28,7 +29,6 @@ _FEW, _MANY = (6, 5), (10, 8)  # stages of the answer's rule and of its check's
 _SLIVER = 1e-9  # rad: a start so near an edge is on it
 _SAME = 1e-12  # rad: of phases, no more than rounding
 _FOLDED = 0.05  # cosine of the rod angle
-_PINS = ("crank_pin_force", "piston_pin_force")
 
 
 @dataclass(frozen=True)
@@ -38,8 +38,8 @@ class Pass:
     width : of the cells [rad], shape (m,); at_begin : J without the crank's where they begin
     inertia, slope, torque : J without the crank's, dJ/dtheta and the torque, shape (m, s)
     rods : torque of all rods, shape (3, m, s)
-    forces : of the joints, the main bearing, crank pins, piston pins and side forces, which have no
-        second component, shape (joints, 2, 3, m, s)
+    forces : of the joints, as `crankmbs.measures.joints.joints_of` lists them, shape (joints, 2, 3,
+        m, s)
     works : of gas and friction on the pistons there, rows of shape (cylinders,) [J]: the gas, the
         friction, and of double-acting cylinders the gas of the head end and of the crank end
     """
@@ -92,7 +92,7 @@ def key_of(scene: Scene) -> Hashable:
     crank = scene.crank
     return (
         (crank.radius, crank.mass, crank.center_of_mass, scene.rod, scene.piston),
-        (scene.cylinders, scene.gas, scene.gravity, scene.friction),
+        (scene.cylinders, scene.gas, scene.gravity, scene.friction, scene.bearings),
         (scene.start.angle, scene.start.speed > 0.0),
         (scene.settles, scene.end[1], ahead_of(scene)),
     )
@@ -155,7 +155,7 @@ def _shares(train: CrankTrain) -> tuple[int, int]:
 
     Where cylinders of one pressure are spread evenly over the period, and nothing has weight, the
     speed is the same whenever one of them is where another was; and so is the main bearing's force
-    where they stand in line and the crank itself does not pull.
+    where they stand in line and the crank itself does not pull; but not that of a journal.
     """
     scene, count = train.scene, len(train.scene.cylinders)
     one = train.pressure is None or len({id(each) for each in train.pressure}) == 1
@@ -165,7 +165,7 @@ def _shares(train: CrankTrain) -> tuple[int, int]:
         return 1, 1
     in_line = len({c.bank for c in scene.cylinders}) == 1
     pulls = scene.crank.mass * scene.crank.center_of_mass != 0.0
-    return count, count if in_line and not pulls else 1
+    return count, count if in_line and not pulls and scene.throws is None else 1
 
 
 def _tabulated(
@@ -177,10 +177,9 @@ def _tabulated(
     theta = (begin + sense * turned).ravel()
     parts = balances(train, theta, sense)
     crank, cylinders = parts.crank, parts.cylinders
-    bearing = np.array([[crank[f"main_bearing_force_{axis}"] for axis in "xy"]])
-    pins = [np.stack([cylinders[f"{pin}_{axis}"] for axis in "xy"], axis=1) for pin in _PINS]
-    side = np.stack([cylinders["side_force"], 0.0 * cylinders["side_force"]], axis=1)
-    forces = np.concatenate([bearing, *pins, side])
+    points: dict[str, Array] = {name: each.ravel() for name, each in crank.items()}
+    points |= {name: each.reshape(len(each), -1).T for name, each in cylinders.items()}
+    forces = np.array([joint.force(points) for joint in joints_of(train.scene)])
     rods = cylinders["journal_torque"][-1]
     slope, torque = -2.0 * rods[0], -crank["external_torque"][2]
     path = sense * (width[:, None] * rule.weights).ravel() * cylinders["piston_velocity"][:, 0]

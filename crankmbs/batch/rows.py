@@ -12,6 +12,7 @@ from crankmbs.batch.measures import by_turns
 from crankmbs.batch.solve import Group, solved_together
 from crankmbs.compare import LECTURES, QUANTITIES
 from crankmbs.measures.estimate import ROUNDING
+from crankmbs.measures.joints import joints_of, shell_area
 from crankmbs.measures.names import names_of
 from crankmbs.mechanics.peaks import negligible
 from crankmbs.mechanics.pressure import PeriodicPressure, pressures_of
@@ -21,8 +22,6 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
 __all__ = ["Rows", "rows_of"]
-
-_JOINTS = ("crank_pin", "piston_pin", "side_force")
 
 
 class Rows(NamedTuple):
@@ -71,26 +70,28 @@ def _messages(group: Group) -> tuple[str, ...]:
 
 
 def _of_joints(group: Group, pairs: dict[str, tuple[Array, Array]]) -> dict[str, Array]:
-    """The angles of the peaks; peaks and means go into ``pairs``."""
+    """The angles of the peaks; peaks, means and specific loads go into ``pairs``."""
     machine, of, error = group.machine, group.numbers, group.errors
-    scene = machine.scene
-    turned = machine.begin + machine.sense * of["angles"]
-    angles = {"main_bearing_peak_angle": np.mod(turned[:, 0], scene.period)}
-    for what in ("peak", "mean"):
-        pairs[f"main_bearing_{what}"] = of[f"{what}s"][:, 0], error[f"{what}s"][:, 0]
+    scene, shares, joints = machine.scene, machine.shares, joints_of(machine.scene)
+    turned, angles = machine.begin + machine.sense * of["angles"], {}
     phases = np.array([cylinder.phase for cylinder in scene.cylinders])
-    for number, joint in enumerate(_JOINTS):
-        every = slice(1 + number * len(phases), 1 + (number + 1) * len(phases))
-        peaks, best = of["peaks"][:, every], np.tile(np.arange(len(phases)), (len(turned), 1))
-        if machine.shares > 1:
+    for name, each in {joint.joint: joint.of for joint in joints}.items():
+        every = [k for k, joint in enumerate(joints) if joint.joint == name]
+        places = turned[:, every] + (phases if each == "cylinder" else 0.0)
+        peaks, best = of["peaks"][:, every], np.tile(np.arange(len(every)), (len(turned), 1))
+        if shares > 1:
             best[:] = np.argmax(peaks, axis=1)[:, None]
-        values = peaks, error["peaks"][:, every], np.mod(turned[:, every] + phases, scene.period)
-        peak, apart, angles[f"{joint}_peak_angle"] = (
-            np.take_along_axis(each, best, axis=1) for each in values
-        )
-        pairs[f"{joint}_peak"] = peak, apart
-        mean, unsure = (by_turns(each["means"][:, every], machine.shares) for each in (of, error))
-        pairs[f"{joint}_mean"] = mean, unsure
+        values = peaks, error["peaks"][:, every], np.mod(places, scene.period)
+        peak, apart, place = (np.take_along_axis(one, best, axis=1) for one in values)
+        means = (by_turns(one["means"][:, every], shares) for one in (of, error))
+        key, area = name.replace(" ", "_"), shell_area(scene, name)
+        alone = ... if each else (..., 0)
+        angles[f"{key}_peak_angle"] = place[alone]
+        for what, pair in (("peak", (peak, apart)), ("mean", means)):
+            value, unsure = (one[alone] for one in pair)
+            pairs[f"{key}_{what}"] = value, unsure
+            if area is not None:
+                pairs[f"{key}_specific_{what}"] = value / area, unsure / area
     return angles
 
 

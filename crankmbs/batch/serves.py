@@ -23,10 +23,9 @@ def loads_of(scene: Scene) -> Loads | None:
 
     It starts turning, and is to settle or to turn through a period at least, in a given time at
     twice the speed of the start; its cycles are all alike, its friction, if any, does not depend on
-    the speed; its bearings are not asked for; no forces act on its
-    pistons; its cylinders are alike; its loads are c0 + c1 omega + c2 omega^2 at every
-    speed in its sense and at any time. Where no such load rises with the speed there is one
-    periodic motion at most.
+    the speed; no forces act on its pistons; its cylinders are alike; its loads are
+    c0 + c1 omega + c2 omega^2 at every speed in its sense and at any time. Where no such load rises
+    with the speed there is one periodic motion at most.
 
     >>> loads_of(load_scene("propeller"))
     (0.0, 0.0, -9.5e-05)
@@ -38,7 +37,7 @@ def loads_of(scene: Scene) -> Loads | None:
         return None
     if scene.fuel is not None or (scene.friction is not None and scene.friction.viscous > 0.0):
         return None
-    if scene.bearings is not None or scene.force or scene.unlike:
+    if scene.force or scene.unlike:
         return None
     if scene.run.formulation not in ("auto", "crank_angle"):
         return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -19,7 +20,7 @@ from crankmbs.figures.strips import (
     speed_figure,
     torque_figure,
 )
-from crankmbs.figures.style import save
+from crankmbs.figures.style import drawn
 from crankmbs.figures.view import View, last_view
 from crankmbs.measures import engine_orders
 from crankmbs.result import Result
@@ -119,7 +120,11 @@ def save_figures(result: Result, folder: Path) -> list[Path]:
     if not varies_strongly(result) and (result.motion is None or result.measures().steady):
         missing.add("transient")
     names = [name for name in _FIGURES if name not in missing]
-    with together(folder) as part:
-        for name in names:
-            save(_FIGURES[name](view), part / f"{name}.png")
+    with (
+        together(folder) as part,
+        ThreadPoolExecutor(1) as other,
+    ):  # one is packed while the next is drawn
+        files = [other.submit(drawn(_FIGURES[name](view)), part / f"{name}.png") for name in names]
+        for file in files:
+            file.result()
     return [folder / f"{name}.png" for name in names]

@@ -17,6 +17,7 @@ from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
+from matplotlib.image import imsave
 from matplotlib.ticker import LogLocator, NullLocator
 from numpy.typing import NDArray
 
@@ -32,6 +33,7 @@ __all__ = [
     "caption",
     "crank_axis",
     "decades",
+    "drawn",
     "footer",
     "force_scale",
     "grouped",
@@ -102,19 +104,27 @@ def png(figure: Figure, dpi: float | Literal["figure"] = "figure") -> bytes:
     return file.getvalue()
 
 
-def save(figure: Figure, file: Path) -> Path:
-    """Write the figure as a PNG file, laid out and drawn once: savefig would draw it twice.
-
-    Raises
-    ------
-    OutputError : the folder cannot be made or written
-    """
+def drawn(figure: Figure) -> Callable[[Path], None]:
+    """Lay the figure out and draw it, once: savefig would draw it twice; what writes it as a PNG
+    file, on another thread too."""
     layout = figure.get_layout_engine()
     if layout is not None:
         layout.execute(figure)
         figure.set_layout_engine("none")
     canvas: Any = FigureCanvasAgg(figure)
-    write_in_one_move(file, lambda part: canvas.print_png(part, pil_kwargs=_FAST))
+    canvas.draw()
+    pixels, dpi = canvas.buffer_rgba(), figure.dpi
+    return lambda file: imsave(file, pixels, format="png", dpi=dpi, pil_kwargs=_FAST)
+
+
+def save(figure: Figure, file: Path) -> Path:
+    """Write the figure as a PNG file.
+
+    Raises
+    ------
+    OutputError : the folder cannot be made or written
+    """
+    write_in_one_move(file, drawn(figure))
     return file
 
 

@@ -75,7 +75,7 @@ class Nodes:
     """
 
     def __init__(self, motion: Motion, widest: float) -> None:
-        self.motion, self.train = motion, motion.train
+        self.train = motion.train  # not the motion, which keeps its nodes
         marks, first = _marks(motion.train, widest), 0
         self._blocks: list[_Block] = []
         for stretch in motion.cells:

@@ -265,11 +265,11 @@ def _numbers(scene: Scene, window: Span, motion: Motion) -> Numbers:
     if duration:
         energy = variables["kinetic_energy"].max(keepdims=True)
         numbers["kinetic_power"] = _energy_gain(scene, motion, energy).over(duration)
-        numbers |= _powers(scene, window, nodes, late)
+        numbers |= _powers(scene, window, nodes, duration, late)
     return numbers
 
 
-def _powers(scene: Scene, window: Span, nodes: Nodes, late: float) -> Numbers:
+def _powers(scene: Scene, window: Span, nodes: Nodes, duration: float, late: float) -> Numbers:
     """Of gas, friction and forces from outside on the pistons; late : units of rounding of the
     duration."""
     variables, velocity = nodes.variables, nodes.variables["piston_velocity"]
@@ -285,7 +285,6 @@ def _powers(scene: Scene, window: Span, nodes: Nodes, late: float) -> Numbers:
     works = Works(work("gas_force"), work("friction_force"), ends)
     whole = window.kind in CYCLES
     cycles = abs(window.angle) / scene.period if whole else 0.0
-    duration = nodes.motion.end - nodes.motion.begin
     numbers = powers(scene, works, cycles, duration)
     if scene.force:
         numbers["force_power"] = work("applied_force").summed.over(duration)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Any, TypeVar
 
-__all__ = ["once"]
+__all__ = ["forget", "once"]
 
 F = TypeVar("F", bound=Callable[..., object])
 
@@ -39,3 +39,18 @@ def once(function: F) -> F:
         return kept[key]
 
     return remembered  # type: ignore[return-value]
+
+
+def forget(of: object) -> None:
+    """Let go of what is kept with an object, and with that in turn: it may hold the object, and
+    then stays in memory until the garbage collector comes by, which is late for a few objects with
+    large arrays.
+
+    >>> train = crank_train(load_scene("coasting"))
+    >>> forget(train.scene)
+    >>> crank_train(train.scene) is train
+    False
+    """
+    kept = getattr(of, "__dict__", {}).pop("_kept", {})
+    for answer in kept.values():
+        forget(answer)

@@ -89,12 +89,22 @@ def measure_tables(measures: Measures) -> list[Table]:
     window = f"over the {measures.window.kind}"
     parts = [
         Table([window, "value, to 6 digits", _ERROR], measure_rows(measures)),
-        Table([window, *FORCE_HEADINGS], peak_rows(measures)),
+        Table([window, *_headings(measures)], peak_rows(measures)),
     ]
     if specific := _specific(measures):
         name = f"specific load {window} [N/mm^2]"
         parts.append(Table([name, "peak", _ERROR, "mean", _ERROR], specific))
     return parts
+
+
+def _headings(measures: Measures) -> list[str]:
+    """Of peaks: over cycles that differ there stands in which each is, before its mean."""
+    return FORCE_HEADINGS[:4] + ["cycle"] * _differ(measures) + FORCE_HEADINGS[4:]
+
+
+def _differ(measures: Measures) -> bool:
+    """Whether a window holds several cycles, which differ."""
+    return measures.window.kind == "last period"
 
 
 def _part(result: Result) -> str:
@@ -192,23 +202,25 @@ def _rows(
 
 
 def peak_rows(measures: Measures) -> list[list[str]]:
-    """Name and the cells under `FORCE_HEADINGS` of each joint's force, then of torque,
-    pressures and speed."""
-    period = measures.scene.period
+    """Name and the cells under the headings of each joint's force, then of torque, pressures and
+    speed."""
+    scene, differ = measures.scene, _differ(measures)
     joints = Counter(joint.joint for joint in measures.joints)
     peaks = Counter(peak.name for peak in measures.peaks)
     rows = [
         [
             labelled(_words(joint), joint.number, joints[joint.joint], "N"),
             *_cells("N", joint.peak),
-            *_angles(joint.crank_angle, joint.cycle_angle, period),
+            *_angles(joint.crank_angle, joint.cycle_angle, scene.period),
+            *[_cycle(joint.crank_angle, scene)] * differ,
             *_cells("N", joint.mean),
         ]
         for joint in measures.joints
     ]
     for top in measures.peaks:
         name = labelled(_words(top), top.number, peaks[top.name], top.units)
-        angles = _angles(top.crank_angle, top.cycle_angle, period)
+        angles = _angles(top.crank_angle, top.cycle_angle, scene.period)
+        angles += [_cycle(top.crank_angle, scene)] * differ
         rows.append([name, *_cells(top.units, top.value), *angles, "", ""])
     return rows
 
@@ -219,10 +231,8 @@ def degrees_within(angle: float, period: float) -> str:
 
 
 def _of_run(peaks: tuple[Peak, ...], scene: Scene) -> list[list[str]]:
-    """The cells under `_WHOLE_RUN`; cycles count from 1 at the start, in either sense."""
+    """The cells under `_WHOLE_RUN`."""
     counts = Counter(peak.name for peak in peaks)
-    start = scene.start or scene.motion
-    assert start is not None
     least = _NO_TIME * max(peak.time for peak in peaks)
     return [
         [
@@ -230,10 +240,17 @@ def _of_run(peaks: tuple[Peak, ...], scene: Scene) -> list[list[str]]:
             *_cells(top.units, top.value),
             f"{top.time:.6g}" if top.time > least else "0",
             *_angles(top.crank_angle, top.cycle_angle, scene.period),
-            str(int(abs(top.crank_angle - start.angle) / scene.period) + 1),
+            _cycle(top.crank_angle, scene),
         ]
         for top in peaks
     ]
+
+
+def _cycle(crank_angle: float, scene: Scene) -> str:
+    """The number of a cycle, from 1 at the start, in either sense."""
+    start = scene.start or scene.motion
+    assert start is not None
+    return str(int(abs(crank_angle - start.angle) / scene.period) + 1)
 
 
 def _specific(measures: Measures) -> list[list[str]]:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from crankmbs.batch.rows import Rows, rows_of
 from crankmbs.errors import CrankmbsError
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.once import forget
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
@@ -86,7 +87,11 @@ def solved(job: Job) -> Block:
     together = [] if job.series else rows_of(scenes)
     solved_together = {int(k) for rows in together for k in rows.which}
     samples = samples_of(job.scene) if job.series else None
-    ended = {k: _one(case, samples) for k, case in enumerate(cases) if k not in solved_together}
+    ended: dict[int, Ended] = {}
+    for k, case in enumerate(cases):
+        if k not in solved_together:
+            ended[k] = _one(case, samples)
+            forget(case)
     return _block(job, ended, together)
 
 

@@ -6,7 +6,7 @@
  */
 import { Sum, eliminate } from "./arrays.js";
 import { Path } from "./path.js";
-import { fillSystem, nodesIn } from "./rule.js";
+import { eachNode, fillSystem } from "./rule.js";
 import { givenAt } from "./tables.js";
 
 /** The maps of the cells of a period, in the order in which they are passed.
@@ -36,7 +36,7 @@ export class AffinePeriod {
     for (let c = 0; c < count; c++) {
       const number = (first + count + (sense > 0 ? c : -1 - c)) % count;
       this.number[c] = number;
-      nodesIn(grid, number, sense).forEach((of, j) => {
+      eachNode(grid, number, sense, (of, j) => {
         const to = c * s + j;
         this.inertia[to] = train.crank.inertia + of.inertia;
         this.push[to] = givenAt(train, of, state, 0) + branch.c0;

@@ -109,8 +109,13 @@ export class Sum {
 
 /** Values of increasing order without those that repeat within a hair. */
 export function distinct(values, hair) {
-  const sorted = Float64Array.from(values).sort();
-  return sorted.filter((value, k) => k === 0 || value - sorted[k - 1] > hair);
+  const found = new Float64Array(values).sort();
+  let [count, before] = [0, -Infinity];
+  for (const value of found) {
+    if (value - before > hair) found[count++] = value;
+    before = value;
+  }
+  return found.slice(0, count);
 }
 
 /** A function that computes its answer to each argument once. */
@@ -140,7 +145,8 @@ export function remembering(compute, key = (...given) => given) {
   };
 }
 
-function isSame(a, b) {
+/** Whether two values, or lists of them each by each, are the same objects. */
+export function isSame(a, b) {
   if (a === b) return true;
   const lists = Array.isArray(a) && Array.isArray(b) && a.length === b.length;
   return lists && a.every((each, k) => isSame(each, b[k]));

@@ -1,7 +1,7 @@
 /** Gauss collocation in one cell of the crank angle: Newton's method on energies at its nodes. */
 import { eliminate } from "./arrays.js";
 import { isAffine, torqueOf } from "./loads.js";
-import { fillSystem, integralTo, nodesIn } from "./rule.js";
+import { eachNode, fillSystem, integralTo } from "./rule.js";
 import { givenAt, movingAt } from "./tables.js";
 
 export const SLOW = Math.PI / 360; // rad: within which no energy may be gone, or it is refused
@@ -20,8 +20,9 @@ export class Stepper {
     }
     this.right = new Float64Array(2 * s); // of the energies, and of a difference of them
     this.system = new Float64Array(s * s);
-    this.kept = new Map(); // lists by the number of the cell, of each shares
-    this.map = null; // of the cell, if it was kept
+    this.kept = new Map(); // of each shares: branches and maps by the number of the cell
+    this.map = null; // of the cells, if that of this cell was kept
+    this.first = 0; // number of its first node in there
     this.affine = false; // whether its energies are linear in that at its begin
     this.work = this.spent = 0;
   }
@@ -29,60 +30,60 @@ export class Stepper {
   /** Take a whole cell of the grid, as it was kept if it was solved before. */
   take(motion, number) {
     const { branch, firing: { shares }, grid, sense } = motion;
-    const kept = this.kept.get(shares)?.[number];
-    if (kept?.branch !== branch) {
-      this.load(motion, nodesIn(grid, number, sense));
+    const kept = this.kept.get(shares);
+    this.map = kept?.branches[number] === branch ? kept.map : null;
+    if (!this.map) {
+      eachNode(grid, number, sense, (of, j) => this.load(motion, of, j));
       return;
     }
-    this.map = kept.map;
-    for (let j = 0, k = 0; j < this.drag.length; j++) {
-      this.inertia[j] = this.map[k++];
-      this.given[j] = this.map[k++];
-      this.right[2 * j + 1] = this.map[k++];
-      k++;
+    this.first = 4 * number * this.drag.length;
+    for (let j = 0, k = this.first; j < this.drag.length; j++, k += 4) {
+      this.inertia[j] = this.map[k];
+      this.given[j] = this.map[k + 1];
+      this.right[2 * j + 1] = this.map[k + 2];
       this.drag[j] = 0;
     }
   }
 
   /** Keep of a solved cell, with inertia and torque, by what its energies grow and are shifted, if
    * they are linear in that at its begin: a run of many cycles meets it again. */
-  keep({ branch, firing: { shares }, energy: begin }, number) {
+  keep({ branch, firing: { shares }, energy: begin, grid: { nodes } }, number) {
     if (!this.affine || this.map) return;
-    if (!this.kept.has(shares)) this.kept.set(shares, []);
-    const map = new Float64Array(4 * this.energy.length);
-    for (let j = 0, k = 0; j < this.energy.length; j++) {
-      const gain = this.right[2 * j + 1];
-      map[k++] = this.inertia[j];
-      map[k++] = this.given[j];
-      map[k++] = gain;
-      map[k++] = this.energy[j] - gain * begin;
+    if (!this.kept.has(shares)) {
+      this.kept.set(shares, { branches: [], map: new Float64Array(4 * nodes.length) });
     }
-    this.kept.get(shares)[number] = { branch, map };
+    const { branches, map } = this.kept.get(shares);
+    branches[number] = branch;
+    for (let j = 0, k = 4 * number * this.energy.length; j < this.energy.length; j++, k += 4) {
+      const gain = this.right[2 * j + 1];
+      map[k] = this.inertia[j];
+      map[k + 1] = this.given[j];
+      map[k + 2] = gain;
+      map[k + 3] = this.energy[j] - gain * begin;
+    }
   }
 
-  /** Take what the crank train is at the nodes, `movingAt` each, in the order they are passed. */
-  load({ train, phases, firing: { shares }, sense }, nodes) {
-    this.map = null;
-    nodes.forEach((of, j) => {
-      this.inertia[j] = train.crank.inertia + of.inertia;
-      this.given[j] = givenAt(train, of, { shares, phases, sense }, 0);
-      this.drag[j] = of.drag;
-    });
+  /** Take what the crank train is at node j of those that are passed, as `movingAt` gives it. */
+  load({ train, phases, firing: { shares }, sense }, of, j) {
+    this.inertia[j] = train.crank.inertia + of.inertia;
+    this.given[j] = givenAt(train, of, { shares, phases, sense }, 0);
+    this.drag[j] = of.drag;
   }
 
   /** The same of a cell from where a motion is to an angle. */
   tabulate(motion, target) {
     const { train, theta } = motion;
-    const at = (node) => movingAt(train, theta + (target - theta) * node);
-    this.load(motion, Array.from(this.rule.nodes, at));
+    this.map = null;
+    this.rule.nodes.forEach((node, j) =>
+      this.load(motion, movingAt(train, theta + (target - theta) * node), j));
   }
 
   /** Solve the cell of a signed width from a motion's state on; whether that converges. */
   solve({ energy: begin, time, sense, branch }, width) {
-    const { rule, energy, slowness, torque, map } = this;
+    const { rule, energy, slowness, torque, map, first } = this;
     if (!map && !this.iterate(begin, time, sense, branch, width)) return false;
     for (let j = 0; map && j < energy.length; j++) {
-      energy[j] = map[4 * j + 2] * begin + map[4 * j + 3];
+      energy[j] = map[first + 4 * j + 2] * begin + map[first + 4 * j + 3];
     }
     this.evaluate(branch, time, sense, width);
     this.work = this.spent = 0;
@@ -167,10 +168,12 @@ export class Stepper {
 
   /** Whether the energy would be gone within half a degree. */
   isSlow() {
-    return this.energy.some((each, j) => {
-      const load = Math.abs(this.torque[j] - this.given[j]);
-      return each <= SLOW * (Math.abs(this.given[j]) + load);
-    });
+    const { energy, torque, given } = this;
+    for (let j = 0; j < energy.length; j++) {
+      const load = Math.abs(torque[j] - given[j]);
+      if (energy[j] <= SLOW * (Math.abs(given[j]) + load)) return true;
+    }
+    return false;
   }
 
   /** Whether the speed may reach a limit in the cell, as its spread at the nodes tells. */

@@ -70,7 +70,7 @@ export function showWords(given, cycle, error) {
   write(find("badge"), text);
   set(find("badge"), { class: good ? "good" : "drifts" });
   const own = given.scene.gas?.shape;
-  find("carried").hidden = !own || isShape(cycle.train.shape, own);
+  find("carried").toggleAttribute("hidden", !own || isShape(cycle.train.shape, own));
 }
 
 function measure() {
@@ -93,9 +93,9 @@ export function unused(cycle, given) {
 /** Say a sentence in the place of the badge, or none. stale : whether the picture is another one
  * than the knobs say */
 export function say(sentence, stale = false) {
-  find("message").textContent = sentence;
-  find("message").hidden = sentence === "";
-  find("badge").hidden = sentence !== "";
+  write(find("message"), sentence);
+  find("message").toggleAttribute("hidden", sentence === "");
+  find("badge").toggleAttribute("hidden", sentence !== "");
   document.body.classList.toggle("stale", stale);
 }
 

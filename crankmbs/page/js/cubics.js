@@ -78,24 +78,27 @@ function beginningAtJump(rows) {
 }
 
 function cycleOf(knots, pieces) {
-  const coefficients = [];
+  const coefficients = new Float64Array(4 * (knots.length - 1));
+  let count = 0;
   for (let power = 0; power < 4; power++) {
-    for (const cubics of pieces) coefficients.push(...cubics[power]);
+    for (const cubics of pieces) {
+      coefficients.set(cubics[power], count);
+      count += cubics[power].length;
+    }
   }
-  return { knots: Float64Array.from(knots), coefficients: Float64Array.from(coefficients) };
+  return { knots: new Float64Array(knots), coefficients };
 }
 
 /** Cubics by descending power from values and slopes at both ends of every piece (Hermite). */
 function hermite(x, y, slope) {
-  const cubics = [[], [], [], []];
-  for (let k = 0; k + 1 < x.length; k++) {
-    const width = x[k + 1] - x[k];
-    const rise = (y[k + 1] - y[k]) / width;
-    const bend = (slope[k] + slope[k + 1] - 2 * rise) / width;
-    cubics[0].push(bend / width);
-    cubics[1].push((rise - slope[k]) / width - bend);
-    cubics[2].push(slope[k]);
-    cubics[3].push(y[k]);
+  const [width, rise] = stepsOf(x, y);
+  const cubics = [0, 1, 2, 3].map(() => new Float64Array(width.length));
+  for (let k = 0; k < width.length; k++) {
+    const bend = (slope[k] + slope[k + 1] - 2 * rise[k]) / width[k];
+    cubics[0][k] = bend / width[k];
+    cubics[1][k] = (rise[k] - slope[k]) / width[k] - bend;
+    cubics[2][k] = slope[k];
+    cubics[3][k] = y[k];
   }
   return cubics;
 }
@@ -111,10 +114,15 @@ function openCubics(x, y, interpolation) {
 function periodicCubics(x, y, interpolation) {
   const n = x.length - 1;
   const period = x[n] - x[0];
-  const wide = Array.from({ length: n + 1 + 2 * AROUND }, (_, k) => k - AROUND);
-  const row = (k) => ((k % n) + n) % n;
-  const angle = wide.map((k) => x[row(k)] + Math.floor(k / n) * period);
-  const cubics = openCubics(angle, wide.map((k) => y[row(k)]), interpolation);
+  const count = n + 1 + 2 * AROUND;
+  const [angle, value] = [new Float64Array(count), new Float64Array(count)];
+  for (let k = 0; k < count; k++) {
+    const turn = Math.floor((k - AROUND) / n);
+    const row = k - AROUND - turn * n;
+    angle[k] = x[row] + turn * period;
+    value[k] = y[row];
+  }
+  const cubics = openCubics(angle, value, interpolation);
   return cubics.map((each) => each.slice(AROUND, AROUND + n));
 }
 
@@ -129,13 +137,22 @@ function straight(x, y, interpolation) {
   return cubics;
 }
 
+/** Widths of the intervals between rows, and the slopes of straight lines across them. */
+function stepsOf(x, y) {
+  const [width, rise] = [new Float64Array(x.length - 1), new Float64Array(x.length - 1)];
+  for (let k = 0; k < width.length; k++) {
+    width[k] = x[k + 1] - x[k];
+    rise[k] = (y[k + 1] - y[k]) / width[k];
+  }
+  return [width, rise];
+}
+
 /** Slopes that keep monotone stretches monotone (Fritsch and Butland's harmonic mean). */
 function pchipSlopes(x, y) {
   const n = x.length;
-  const width = Array.from({ length: n - 1 }, (_, k) => x[k + 1] - x[k]);
-  const rise = width.map((w, k) => (y[k + 1] - y[k]) / w);
+  const [width, rise] = stepsOf(x, y);
   if (n === 2) return [rise[0], rise[0]];
-  const slope = new Array(n).fill(0);
+  const slope = new Float64Array(n);
   for (let k = 1; k + 1 < n; k++) {
     if (rise[k - 1] * rise[k] <= 0) continue;
     const before = 2 * width[k] + width[k - 1];
@@ -164,15 +181,11 @@ function endSlope(near, next, rise, riseNext) {
  * row from either end ("not a knot"); the parabola through three rows, the line through two. */
 function splineSlopes(x, y) {
   const n = x.length;
-  const width = Array.from({ length: n - 1 }, (_, k) => x[k + 1] - x[k]);
-  const rise = width.map((w, k) => (y[k + 1] - y[k]) / w);
+  const [width, rise] = stepsOf(x, y);
   if (n === 2) return [rise[0], rise[0]];
   if (n === 3) return parabolaSlopes(width, rise);
   const last = n - 1;
-  const diagonal = new Array(n);
-  const lower = new Array(n).fill(0);
-  const upper = new Array(n).fill(0);
-  const right = new Array(n);
+  const [diagonal, lower, upper, right] = [0, 1, 2, 3].map(() => new Float64Array(n));
   diagonal[0] = width[1];
   upper[0] = width[0] + width[1];
   right[0] = notAKnot(width[0], width[1], rise[0], rise[1]);
@@ -202,8 +215,7 @@ function parabolaSlopes([near, far], [first, last]) {
 /** Solve a tridiagonal system; the end rows of a spline may have a small diagonal, and are mild. */
 function tridiagonal(lower, diagonal, upper, right) {
   const n = diagonal.length;
-  const pivot = new Array(n);
-  const answer = new Array(n);
+  const [pivot, answer] = [new Float64Array(n), new Float64Array(n)];
   pivot[0] = diagonal[0];
   answer[0] = right[0];
   for (let k = 1; k < n; k++) {

@@ -5,6 +5,7 @@ import { LECTURES, cylinderLectured, lecturedAt } from "./lecture.js";
 import { measuredSpan, measuresOf } from "./measures.js";
 import { cylinderReactionsAt, reactionsAt } from "./reactions.js";
 import { Refused } from "./refused.js";
+import { spread } from "./shapes.js";
 
 const POINTS = 360; // intervals of a curve
 const QUICK = { stages: 5, tolerance: null };
@@ -31,19 +32,23 @@ export function cycleOf(engine, scene, endings, { fine = false, warm = null } = 
   }
   const span = measuredSpan(scene, motion.from, motion.to);
   const measures = fine ? measuresOf(motion, engine.rules[9], span) : null;
-  return new Cycle(scene, motion, span, { why, measures });
+  const angles = spread(span.from, span.to, POINTS);
+  const moving = scene.motion === null
+    ? engine.samples(motion.train, angles, 1, scene.grid_period)
+    : null;
+  const rows = angles.map((theta, n) => motion.at(theta, moving?.at(n)));
+  return new Cycle(scene, motion, { ...span, angles, rows, why, measures });
 }
 
 /** Samples of one cycle, and what the formulas say at them. */
 class Cycle {
-  constructor(scene, motion, { from, to }, { why, measures }) {
-    Object.assign(this, { scene, motion, from, to, why, measures });
+  constructor(scene, motion, found) {
+    Object.assign(this, { scene, motion, ...found });
+    const { from, to, rows } = this;
     this.train = motion.train;
     this.sense = Math.sign(to - from);
-    this.angles = Array.from({ length: POINTS + 1 }, (_, k) => from + ((to - from) * k) / POINTS);
-    this.rows = this.angles.map((theta) => motion.at(theta));
     this.made = new Map(); // samples, all or of a cylinder alone
-    this.times = this.rows.map(({ time }) => time);
+    this.times = rows.map(({ time }) => time);
     this.begin = this.times[0];
     this.duration = this.times[POINTS] - this.begin;
     this.mean = (to - from) / this.duration;

@@ -58,6 +58,7 @@ export function inertiaOfRim(rim, radius) {
 
 /** From a cylinder's frame to the engine's. */
 export function turnedBy(bank, x, y) {
+  if (bank === 0) return [x, y];
   const [cos, sin] = [Math.cos(bank), Math.sin(bank)];
   return [x * cos - y * sin, x * sin + y * cos];
 }

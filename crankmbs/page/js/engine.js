@@ -17,7 +17,8 @@ import { partsOf } from "./refine.js";
 import { settle } from "./settled.js";
 import { speedLaw } from "./speed.js";
 import { strongOf } from "./strong.js";
-import { edgesOf, nodeMaker, reduceAt, split } from "./tables.js";
+import { nodeMaker, tableMaker } from "./table.js";
+import { edgesOf, reduceAt, split } from "./tables.js";
 
 const ROUNDS = 8; // of cutting cells
 const MOST_CELLS = 20000;
@@ -29,6 +30,7 @@ export class Engine {
     this.rules = rules;
     this.nodes = nodeMaker();
     this.finer = nodeMaker();
+    this.samples = tableMaker();
     this.shapes = remembering((lengths) =>
       lengths.map(([radius, length, offset]) => ({ radius, length, offset })));
     this.loops = remembering((shapes) => shapes.map((shape) => new Loop(shape)));
@@ -49,13 +51,14 @@ export class Engine {
     const { crank, cylinders, levers, gravity, friction, loads, fuel, period } = scene;
     const gears = this.gears(scene);
     const [{ shape, piston }] = gears;
-    const machine = { gears, shape, piston, crank, cylinders, levers };
     const pressures = quick ? this.pressures.quick : this.pressures.fine;
     const share = piston.crank_end_share;
     const { pressure, combustion, crank_end } =
       pressures(scene.gas, shape, share, quick ? SEEN : DIAGRAM);
-    const outside = { gravity, friction, loads, fuel, period, applies: scene.force.length > 0 };
-    return { ...machine, ...outside, pressure, combustion, crank_end };
+    return {
+      gears, shape, piston, crank, cylinders, levers, gravity, friction, loads, fuel, period,
+      pressure, combustion, crank_end, applies: scene.force.length > 0,
+    };
   }
 
   /** What moves in every cylinder, with the forces from outside on its piston. */
@@ -64,11 +67,12 @@ export class Engine {
     const shapes = this.shapes(parts.map((each) =>
       [each.radius, each.rod.length, each.piston.offset]));
     const loops = this.loops(shapes);
-    return parts.map((part, k) => {
+    return parts.map(({ radius, rod, piston }, k) => {
       const applied = appliedTo(force, k);
       const drag = applied.reduce((sum, { viscous }) => sum + viscous, friction?.viscous ?? 0);
       const top = topPosition(shapes[k]);
-      return { ...part, shape: shapes[k], loop: loops[k], top, applied, drag };
+      const [shape, loop] = [shapes[k], loops[k]];
+      return { radius, rod, piston, shape, loop, top, applied, drag };
     });
   }
 
@@ -145,9 +149,9 @@ class Free {
     this.to = travel.theta;
   }
 
-  /** The sample at a crank angle [rad] between `from` and `to`. */
-  at(theta) {
-    return this.path.at(this.train, theta);
+  /** The sample at a crank angle [rad] between `from` and `to`; of : `movingAt` there. */
+  at(theta, of) {
+    return this.path.at(this.train, theta, of);
   }
 
   /** Crank angles from one to another between which all is smooth. */
@@ -171,13 +175,15 @@ class Settled {
     this.late = this.at(start.angle).time;
   }
 
-  /** The sample at any crank angle [rad]; time counts from the start's angle. */
-  at(theta) {
+  /** The sample at any crank angle [rad], time from the start's angle on; of : as above. */
+  at(theta, of) {
     const { train, period, sense, base, path } = this;
     const turns = Math.floor((sense * (theta - base)) / period);
     const within = theta - sense * turns * period;
-    const found = readCell(train, path.rule, path.cellAt(within), within);
-    return { ...found, theta, time: found.time + turns * this.duration - this.late };
+    const found = readCell(train, path.rule, path.cellAt(within), within, of);
+    found.theta = theta;
+    found.time += turns * this.duration - this.late;
+    return found;
   }
 
   /** Crank angles from one to another between which all is smooth. */

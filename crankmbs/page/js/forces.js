@@ -27,14 +27,18 @@ function onPiston(train, v, k) {
   ];
   if (train.friction !== null) {
     const friction = arrow("friction on piston", "bearing", pin, place(-at.friction_force, 0));
-    found.push({ ...friction, onSide: at.side_force > 0 ? -1 : 1 });
+    friction.onSide = at.side_force > 0 ? -1 : 1;
+    found.push(friction);
   }
   if (train.pressure.length) {
-    found.push({ ...arrow("gas on piston", "gas", pin, place(-at.gas_force, 0)), onCrown: true });
+    const gas = arrow("gas on piston", "gas", pin, place(-at.gas_force, 0));
+    gas.onCrown = true;
+    found.push(gas);
   }
   if (train.applies) {
     const applied = arrow("applied force", "outside", pin, place(-at.applied_force, 0));
-    found.push({ ...applied, onSkirt: true });
+    applied.onSkirt = true;
+    found.push(applied);
   }
   return found;
 }

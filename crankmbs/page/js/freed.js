@@ -47,9 +47,12 @@ export function settleFree(train, grid, start) {
 /** Machine and grid whose drag is what it would be at a constant speed [rad/s]. */
 function evenly(train, grid, speed) {
   if (train.gears.every(({ drag }) => drag === 0)) return { train, grid };
-  const nodes = grid.nodes.map((of) => ({ ...of, torque: of.torque - of.drag * speed, drag: 0 }));
+  const at = (n) => {
+    const of = grid.nodes.at(n);
+    return { ...of, torque: of.torque - of.drag * speed, drag: 0 };
+  };
   const gears = train.gears.map((gear) => ({ ...gear, drag: 0 }));
-  return { train: { ...train, gears }, grid: { ...grid, nodes } };
+  return { train: { ...train, gears }, grid: { ...grid, nodes: { ...grid.nodes, at } } };
 }
 
 /** The constant load [N m] under which a period gains nothing. */

@@ -30,14 +30,16 @@ export class Firing {
   /** Decide at a crank angle, for the cylinders that do so there; state : gives time and speed. */
   pass(theta, sense, state) {
     if (this.fuel === null || Math.abs(theta - this.start.angle) <= SAME) return;
-    const turnsOf = ({ phase }) => (theta + phase - Math.PI) / this.period;
-    const isWhole = (turns) => Math.abs(turns - Math.round(turns)) * this.period < 2 * SAME;
-    if (!this.cylinders.some((each) => isWhole(turnsOf(each)))) return;
-    const cycles = this.cylinders.map((each) => {
-      const turns = turnsOf(each);
-      return isWhole(turns) ? this.cycleOf(each.phase, Math.round(turns), sense) : 0;
-    });
-    if (cycles.some((cycle) => cycle > 0)) this.decide(...state(), cycles);
+    const { cylinders, period } = this;
+    let cycles = null;
+    for (let k = 0; k < cylinders.length; k++) {
+      const { phase } = cylinders[k];
+      const turns = (theta + phase - Math.PI) / period;
+      if (Math.abs(turns - Math.round(turns)) * period >= 2 * SAME) continue;
+      cycles ??= cylinders.map(() => 0);
+      cycles[k] = this.cycleOf(phase, Math.round(turns), sense);
+    }
+    if (cycles?.some((cycle) => cycle > 0)) this.decide(...state(), cycles);
   }
 
   /** How many firing dead centres the cycle that is decided and those since the start hold. */

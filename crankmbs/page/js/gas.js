@@ -240,9 +240,13 @@ function netOf(one, other, share) {
   let common = turns[0];
   while (common % turns[1]) common += turns[0];
   const last = first + common * TURN;
-  const inside = (cycle) => knotsOver(cycle, first, last - first).map((each) => first + each);
-  const marks = distinct([first, ...inside(one), ...inside(other)], KNOT);
-  const knots = Float64Array.from([...marks.filter((each) => each < last - KNOT), last]);
+  const marks = [first, last];
+  for (const cycle of [one, other]) {
+    for (const ahead of knotsOver(cycle, first, last - first)) {
+      if (first + ahead < last - KNOT) marks.push(first + ahead);
+    }
+  }
+  const knots = distinct(marks, KNOT);
   const less = cycleOn(other, knots);
   const { coefficients: of } = cycleOn(one, knots);
   const coefficients = of.map((c, k) => c - share * less.coefficients[k]);

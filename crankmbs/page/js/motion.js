@@ -31,7 +31,7 @@ export class Travel {
     this.phases = firstPhases(train.loads, omega);
     this.firing = new Firing(train.fuel, train.cylinders, train.period, this.start);
     this.path = new Path(grid.rule);
-    this.atNodes = { torque: [], slowness: [] }; // of all cells
+    this.atNodes = null; // torque and slowness of as many cells as a period has
     this.stepper = new Stepper(grid.rule);
     this.factor = 1;
     this.lost = 0; // of the energy and the time by rounding
@@ -111,11 +111,10 @@ export class Travel {
     const { stepper, energy, time } = this;
     const width = target - this.theta;
     const { sense, branch, phases } = this;
-    const { torque, slowness } = this.atNodes;
-    const first = torque.length;
+    const { torque, slowness, first } = this.room(stepper.torque.length);
     for (let j = 0; j < stepper.torque.length; j++) {
-      torque.push(stepper.torque[j]);
-      slowness.push(stepper.slowness[j]);
+      torque[first + j] = stepper.torque[j];
+      slowness[first + j] = stepper.slowness[j];
     }
     this.path.add({
       from: this.theta, width, energy, time, sense,
@@ -133,18 +132,31 @@ export class Travel {
     this.stuck = 0;
   }
 
+  /** Where torque and slowness of the next cell of so many stages go. */
+  room(stages) {
+    const { length } = this.grid.nodes;
+    const first = this.atNodes === null ? length : this.atNodes.first + stages;
+    if (first < length) this.atNodes.first = first;
+    else {
+      const [torque, slowness] = [new Float64Array(length), new Float64Array(length)];
+      this.atNodes = { torque, slowness, first: 0 };
+    }
+    return this.atNodes;
+  }
+
   /** Where in the solved cell, from 0 to 1, the branch ends first, and by what; null if nowhere. */
   exit(width) {
     const { branch, stepper, sense, time } = this;
     const timely = time + Math.abs(width) * stepper.spent >= branch.tEnd;
-    if (!timely && branch.low === -Infinity && branch.high === Infinity) return null;
+    const met = (limit) => Number.isFinite(limit) && limit * sense > 0;
+    if (!timely && !met(branch.low) && !met(branch.high)) return null;
     const exits = [];
     if (timely) {
       const late = (x) => time + Math.abs(width) * stepper.spentTo(x) - branch.tEnd;
       exits.push({ x: rootIn(late, 0, 1), time: branch.tEnd, omega: null });
     }
     for (const [limit, side] of [[branch.low, -1], [branch.high, 1]]) {
-      if (!Number.isFinite(limit) || limit * sense <= 0) continue;
+      if (!met(limit)) continue;
       const beyond = (x) => side * (this.speedIn(width, x) - limit);
       const x = firstAbove(beyond, stepper.places, stepper.mayLeave(limit, sense));
       if (x !== null) exits.push({ x, time: null, omega: limit });

@@ -32,9 +32,10 @@ export function reactionsAt(train, sample) {
 /** Those of the motion and of one cylinder alone, from number 0, without the torques in its crank's
  * journals. */
 export function cylinderReactionsAt(train, sample, number) {
-  const cylinders = [];
-  cylinders[number] = cylinderAt(train, sample, number).variables;
-  return { ...motionAt(sample), cylinders };
+  const found = motionAt(sample);
+  found.cylinders = [];
+  found.cylinders[number] = cylinderAt(train, sample, number).variables;
+  return found;
 }
 
 function motionAt({ time, theta, omega, alpha }) {

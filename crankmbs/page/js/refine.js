@@ -1,6 +1,6 @@
 /** What cells err, and which must be cut: a finer Gauss rule along the solution. */
 import { torqueOf } from "./loads.js";
-import { integralTo, nodesIn } from "./rule.js";
+import { eachNode, integralTo } from "./rule.js";
 import { givenAt } from "./tables.js";
 
 const FINEST = 3e-14; // what rounding leaves of a cell
@@ -50,7 +50,7 @@ function alongFiner(train, rule, finer, cell) {
   const { sense, branch, width } = cell;
   const torque = [];
   const slowness = [];
-  nodesIn(finer, cell.number, sense).forEach((of, j) => {
+  eachNode(finer, cell.number, sense, (of, j) => {
     const x = finer.rule.nodes[j];
     const energy = cell.energy + width * integralTo(rule, cell.torque, cell.first, x);
     const time = cell.time + Math.abs(width) * integralTo(rule, cell.slowness, cell.first, x);

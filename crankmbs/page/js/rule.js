@@ -48,9 +48,10 @@ export function nodesBetween(edges, rule) {
   return angles;
 }
 
-/** What is at the nodes of a cell of a grid, in the order in which a sense of rotation passes. */
-export function nodesIn({ rule, nodes }, number, sense) {
+/** Visit the nodes of a cell of a grid in the order in which a sense of rotation passes, with what
+ * is there and the number of each. */
+export function eachNode({ rule, nodes }, number, sense, visit) {
   const stages = rule.nodes.length;
-  const found = nodes.slice(number * stages, (number + 1) * stages);
-  return sense > 0 ? found : found.reverse();
+  const first = number * stages;
+  for (let j = 0; j < stages; j++) visit(nodes.at(first + (sense > 0 ? j : stages - 1 - j)), j);
 }

@@ -99,7 +99,9 @@ export class Section {
 
   /** The largest torque over the angle with that of a branch at rest [N m]. */
   largest(branch) {
-    const most = this.grid.nodes.reduce((all, of) => Math.max(all, Math.abs(of.torque)), 0);
+    const { nodes } = this.grid;
+    let most = 0;
+    for (let n = 0; n < nodes.length; n++) most = Math.max(most, Math.abs(nodes.at(n).torque));
     return most + Math.abs(branch.c0);
   }
 

@@ -40,9 +40,9 @@ export class Stage {
     this.most = Math.max(...cycle.samplesOf(k).map((v) => v.cylinders[k].gas_pressure), 1);
     const lead = Math.max(...cycle.leads.map(Math.abs));
     this.magnified = lead > 1e-9 ? Math.max(roundBelow(LEAD / lead), 1) : 0;
-    const made = JSON.stringify([k, train.cylinders, heavy, this.magnified > 0]);
+    const { rim, ring, ...others } = this.sizes;
+    const made = JSON.stringify([k, train.cylinders, heavy, this.magnified > 0, ring]);
     if (made !== this.made) this.make(heavy);
-    const { rim, ...others } = this.sizes;
     const fits = JSON.stringify([made, others, this.size, this.magnified, this.letters]);
     if (fits !== this.fits) this.fit();
     [this.made, this.fits] = [made, fits];
@@ -89,6 +89,7 @@ export class Stage {
       this.ticks = add(this.turning, "path", { class: "tick" });
       this.pointer = add(this.turning, "path", { class: "pointer" });
       this.wedge = add(ring, "path");
+      this.fitRing();
     }
     this.arrows = add(root, "g", { class: "arrows" });
     this.bar = add(root, "g", { class: "scale" });
@@ -116,7 +117,6 @@ export class Stage {
     this.edge = { left: middle - half, right: middle + half, top: above };
     parts.forEach((part, k) => this.fitCylinder(part, sizes.each[k]));
     set(axle, { r: 0.13 * sizes.r * UNITS });
-    if (this.magnified) this.fitRing();
   }
 
   /** Ticks of the ring at mean speed, and its pointer. */
@@ -154,10 +154,12 @@ export class Stage {
   /** Still parts of a cylinder, and those that move. */
   cylinder(k) {
     const { bank } = this.train.cylinders[k];
-    const group = add(this.root, "g", { class: looksOf(this.train, k, this.k) });
+    const looks = looksOf(this.train, k, this.k);
+    const group = add(this.root, "g", { class: looks });
     const fixed = add(group, "g", { transform: `rotate(${(-bank * 180) / Math.PI})` });
-    const gas = add(fixed, "rect", { class: "gas" });
-    const wall = add(fixed, "path", { class: "wall" });
+    const pale = looks === "cylinder pale"; // no cylinder is drawn around its piston
+    const gas = pale ? null : add(fixed, "rect", { class: "gas" });
+    const wall = pale ? null : add(fixed, "path", { class: "wall" });
     const piston = add(fixed, "g", { class: "piston grip", "data-grip": "piston", "data-k": k });
     const body = add(piston, "rect");
     const grooves = add(piston, "path", { class: "groove" });
@@ -175,11 +177,13 @@ export class Stage {
     const half = scale(0.5 * sizes.width);
     const [head, low] = [-scale(sizes.head), -scale(sizes.low)];
     Object.assign(part, { head, middle });
-    set(gas, { x: middle - half, width: 2 * half, y: head });
-    const thick = scale(0.06 * sizes.width);
-    const d = `M${middle - half - thick / 2} ${low}V${head - thick / 2}` +
-      `H${middle + half + thick / 2}V${low}`;
-    set(wall, { d, "stroke-width": thick });
+    if (wall) {
+      set(gas, { x: middle - half, width: 2 * half, y: head });
+      const thick = scale(0.06 * sizes.width);
+      const d = `M${middle - half - thick / 2} ${low}V${head - thick / 2}` +
+        `H${middle + half + thick / 2}V${low}`;
+      set(wall, { d, "stroke-width": thick });
+    }
     const [x, width, crown] = [middle - half * 0.985, 1.97 * half, scale(sizes.crown)];
     const high = crown + scale(sizes.skirt);
     set(body, { x, width, y: -crown, height: high, rx: 0.09 * half });
@@ -214,10 +218,12 @@ export class Stage {
     const r = sizes.r * UNITS;
     const x = at.piston_position * UNITS;
     set(piston, { transform: `translate(0 ${-x})` });
-    const crown = -x - sizes.crown * UNITS;
-    const share = Math.min(Math.max(at.gas_pressure / this.most, 0), 1);
-    const opacity = 0.08 + 0.8 * Math.sqrt(share);
-    set(gas, { height: Math.max(crown - head, 0), "fill-opacity": opacity });
+    if (gas) {
+      const crown = -x - sizes.crown * UNITS;
+      const share = Math.min(Math.max(at.gas_pressure / this.most, 0), 1);
+      const opacity = 0.08 + 0.8 * Math.sqrt(share);
+      set(gas, { height: Math.max(crown - head, 0), "fill-opacity": opacity });
+    }
     const angle = theta + phase + bank;
     const [cx, cy] = onScreen(turnedBy(angle, r, 0));
     const [px, py] = onScreen(turnedBy(bank, x, -middle));

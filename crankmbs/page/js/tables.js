@@ -3,17 +3,14 @@
  *     J = J_crank + sum of  m_p x1^2 + m_r (gx1^2 + gy1^2) + I_r beta1^2
  *
  * over the cylinders, with the rod's centre of mass g = (r cos(phi) + a cos(beta), r sin(phi) - a
- * sin(beta)). At the nodes of the cells of a period it is kept, without the crank's inertia, so
- * that a flywheel or a load costs nothing here.
+ * sin(beta)).
  */
 import { appliedAt } from "./applied.js";
-import { distinct, remembering, repeated, wrapped } from "./arrays.js";
+import { distinct, repeated } from "./arrays.js";
 import { knotsOver, valueAt } from "./cubics.js";
 import { ringTorque } from "./friction.js";
 import { torqueOverAngle } from "./loads.js";
-import { nodesBetween } from "./rule.js";
 
-const TURN = 2 * Math.PI;
 const WIDEST = (6 * Math.PI) / 180;
 const SLIVER = 1e-12; // rad: two edges closer than this are one
 const NOTHING = []; // thousands of nodes share it
@@ -36,37 +33,47 @@ export function reduceAt(train, theta) {
   return of;
 }
 
-/** The same without the crank's inertia. partOf(k, phi) : gives `partAt` of cylinder k */
-export function movingAt(train, theta, partOf = (k, phi) => partAt(train, k, phi)) {
-  const { crank, gears, cylinders, gravity, pressure, combustion } = train;
-  const force = train.friction?.ring_force ?? 0;
-  const gas = train.friction?.ring_pressure && pressure.length ? [] : NOTHING;
+/** The same without the crank's inertia. */
+export function movingAt(train, theta) {
+  const { crank, cylinders, gravity, friction, pressure, combustion } = train;
+  const gas = friction?.ring_pressure && pressure.length ? [] : NOTHING;
   const burning = combustion.length ? [] : NOTHING;
   let [inertia, slope, rings, drag] = [0, 0, 0, 0];
   let torque = crankWeight(crank, gravity, theta);
   for (let k = 0; k < cylinders.length; k++) {
     const phi = theta + cylinders[k].phase;
-    const { piston } = gears[k];
-    const part = partOf(k, phi);
-    const { x1 } = part;
-    inertia += part.inertia;
-    slope += part.slope;
-    torque += part.weight;
-    const pressed = pressure.length ? -piston.area * valueAt(pressure[k], phi) * x1 : 0;
-    torque += pressed;
-    if (gas !== NOTHING) gas.push(pressed);
-    const { steady, jumping } = appliedAt(gears[k], { phi, x: part.x, x1 });
-    torque -= x1 * steady;
-    rings += Math.abs(x1) * (force + jumping);
-    drag += gears[k].drag * x1 * x1;
-    if (combustion.length) burning.push(-piston.area * valueAt(combustion[k], phi) * x1);
+    const masses = massesAt(train, k, phi);
+    const push = pushAt(train, k, phi, masses.x, masses.x1);
+    inertia += masses.inertia;
+    slope += masses.slope;
+    torque += masses.weight + push.torque;
+    rings += push.rings;
+    drag += push.drag;
+    if (gas !== NOTHING) gas.push(push.gas);
+    if (burning !== NOTHING) burning.push(push.combustion);
   }
   return { theta, inertia, slope, torque, combustion: burning, gas, rings, drag };
 }
 
+/** What pushes the piston of cylinder k at a cycle angle [rad] does to the crank: torque of gas and
+ * forces, that of the gas alone and what combustion adds, rings and drag. */
+export function pushAt({ gears, friction, pressure, combustion }, k, phi, x, x1) {
+  const { piston, drag } = gears[k];
+  const lever = -piston.area * x1;
+  const gas = pressure.length ? lever * valueAt(pressure[k], phi) : 0;
+  const { steady, jumping } = appliedAt(gears[k], { phi, x, x1 });
+  return {
+    torque: gas - x1 * steady,
+    gas,
+    combustion: combustion.length ? lever * valueAt(combustion[k], phi) : 0,
+    rings: Math.abs(x1) * ((friction?.ring_force ?? 0) + jumping),
+    drag: drag * x1 * x1,
+  };
+}
+
 /** What the masses of cylinder k are at a cycle angle [rad]: its share of inertia and slope, and
  * the torque of its weights; with the piston's position and its derivative. */
-function partAt({ gears, cylinders, gravity }, k, phi) {
+export function massesAt({ gears, cylinders, gravity }, k, phi) {
   const { rod, piston, loop } = gears[k];
   const at = loop.at(phi);
   const g = rodCentre(at, rod.center_of_mass);
@@ -91,7 +98,7 @@ export function givenAt({ friction, loads }, of, { shares, phases, sense }, omeg
 }
 
 /** Torque of the crank's own weight at a crank angle [N m]. */
-function crankWeight(crank, gravity, theta) {
+export function crankWeight(crank, gravity, theta) {
   if (gravity === null) return 0;
   const [gx, gy] = gravityVector(gravity, 0);
   const first = crank.mass * crank.center_of_mass;
@@ -157,42 +164,4 @@ function nearFolds({ radius, length, offset }, { phase }, period) {
     marks.push(...repeated(around.map((each) => fold * Math.PI - phase + each), period));
   }
   return marks;
-}
-
-/** A maker of what is at the nodes of cells, `movingAt` each, which remembers its last. */
-export function nodeMaker() {
-  const angles = remembering(nodesBetween);
-  const nodes = remembering(
-    (at, stages, train) => {
-      const found = new Array(at.length);
-      const partOf = partsAt(at, stages, train);
-      for (let k = 0; k < at.length; k++) found[k] = movingAt(train, at[k], partOf(k));
-      return found;
-    },
-    (at, stages, { crank, gears, cylinders, gravity, friction, pressure, combustion }) => {
-      const parts = gears.map(({ shape, rod, piston, drag, applied }) => [
-        shape, rod.mass, rod.center_of_mass, rod.inertia, piston.mass, piston.area, drag, applied,
-      ]);
-      const first = crank.mass * crank.center_of_mass;
-      return [at, parts, cylinders, first, gravity, friction, pressure, combustion];
-    },
-  );
-  return (train, edges, rule) => nodes(angles(edges, rule), rule.nodes.length, train);
-}
-
-/** For the number of a node a function that gives `partAt` of the cylinders there: in cells of one
- * width like cylinders meet the same angles of a turn, and each is computed once. */
-function partsAt(at, stages, train) {
-  const { cylinders } = train;
-  const width = at[stages] - at[0];
-  const cells = [TURN, ...cylinders.map(({ phase }) => wrapped(phase, TURN))]
-    .map((angle) => angle / width);
-  const even = cells.every((each) => Math.abs(each - Math.round(each)) < SLIVER / width) &&
-    at.every((each, n) => n < stages || Math.abs(each - at[n - stages] - width) < SLIVER);
-  if (!even) return () => undefined;
-  const [turn, ...ahead] = cells.map((each) => stages * Math.round(each));
-  const like = cylinders.map(({ own, bank }, k) =>
-    (own ? k : cylinders.findIndex((each) => !each.own && each.bank === bank)));
-  const found = cylinders.map(() => new Array(turn));
-  return (n) => (k, phi) => (found[like[k]][(n + ahead[k]) % turn] ??= partAt(train, k, phi));
 }
