@@ -15,7 +15,7 @@ from crankmbs.motion.base import State
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.mode import Mode, begun
 from crankmbs.motion.multibody.forces import Forces, Limits
-from crankmbs.motion.multibody.integrate import Path, integrate
+from crankmbs.motion.multibody.integrate import Path, Stretch, integrate
 from crankmbs.motion.multibody.mechanism import closed
 from crankmbs.motion.multibody.model import Model
 from crankmbs.motion.multibody.runs import Runs
@@ -67,12 +67,23 @@ def paths(scene: Scene, step: float, halvings: int) -> list[Path]:
     return found
 
 
+def at(run: Path, time: Array) -> Array:
+    """Crank angle and speed at times, by cubics between steps; shape (2, p)."""
+    begins = np.array([stretch.begin.time for stretch in run.stretches])
+    which = np.searchsorted(begins, time, side="right") - 1
+    rows = [run.stretches[k].rows for k in which]
+    places = [(t - row[0, 0]) / (row[-1, 0] - row[0, 0]) for t, row in zip(time, rows, strict=True)]
+    return np.column_stack(
+        [run.stretches[k].at(np.array(x))[1:] for k, x in zip(which, places, strict=True)]
+    )
+
+
 @pytest.mark.parametrize("scene", [COASTING, ASKEW, V_TWIN], ids=["one", "askew", "banks"])
 def test_accelerations_and_joint_forces_are_those_of_the_reduced_equations(scene: Scene) -> None:
     train, model = crank_train(scene), Model(scene)
     theta, omega = np.linspace(-7.0, 9.0, 50), np.linspace(-90.0, 120.0, 50)
     gas = Forces(train).gas(theta, None)
-    found = model.states(theta, omega, gas, torque=np.full(50, 7.0))
+    found = model.states(theta, omega, gas, np.full(50, 7.0), free=True)
     model.close()
     inertia, slope, torque = reduce(train, theta)
     alpha = (torque + 7.0 - 0.5 * slope * omega**2) / inertia
@@ -90,11 +101,11 @@ def test_positions_are_exudyns_own_closed_loop() -> None:
     model = Model(ASKEW)
     theta = np.linspace(0.0, 6.0, 30)
     rest = np.zeros((30, 2))
-    found = model.states(theta, np.full(30, 3.0), rest, torque=np.zeros(30))
+    found = model.states(theta, np.full(30, 3.0), rest, np.zeros(30), free=True)
     np.testing.assert_allclose(found.position, closed(ASKEW, theta), atol=1e-15)
     other = replace(ASKEW, rod=replace(ASKEW.rod, length=1.001 * ASKEW.rod.length))
     model.scene = other  # a wrong loop to begin with: exudyn's constraints mend it
-    mended = model.states(theta, np.full(30, 3.0), rest, torque=np.zeros(30))
+    mended = model.states(theta, np.full(30, 3.0), rest, np.zeros(30), free=True)
     model.close()
     assert np.abs(closed(other, theta) - closed(ASKEW, theta)).max() > 1e-4
     np.testing.assert_allclose(mended.position, found.position, atol=1e-6)
@@ -107,22 +118,22 @@ def test_positions_are_exudyns_own_closed_loop() -> None:
 )
 def test_order_two_is_clean_from_the_first_step_over_bends_and_jumps(scene: Scene) -> None:
     runs = paths(scene, 2e-4, 4)
-    assert len({len(run.states) for run in runs}) == 1
+    assert len({len(run.stretches) for run in runs}) == 1
     time = np.array([1e-3, 5e-3, 0.02, 0.05])
-    motions = np.array([run.at(time) for run in runs])
+    motions = np.array([at(run, time) for run in runs])
     first, second, third = np.diff(motions, axis=0)
     for row in (0, 1):
         np.testing.assert_allclose(first[row] / second[row], 4.0, atol=0.25)
         np.testing.assert_allclose(second[row] / third[row], 4.0, atol=0.15)
-    inside = np.array([run.at(np.array([5e-5]))[1] for run in runs])  # the first step
+    inside = np.array([at(run, np.array([5e-5]))[1] for run in runs])  # the first step
     first, second, third = np.diff(inside, axis=0)
     np.testing.assert_allclose([first / second, second / third], 4.0, atol=0.2)
 
 
 def test_stretches_meet_at_the_speed_of_a_row() -> None:
     (run,) = paths(loaded(OVER_SPEED["jump"]), 2e-4, 1)
-    assert len(run.states) > 2
-    assert {state.omega for state in run.states[1:-1]} == {101.0}
+    assert len(run.stretches) > 1
+    assert {stretch.begin.omega for stretch in run.stretches[1:]} == {101.0}
 
 
 def test_a_run_is_the_same_on_every_machine_and_ends_by_its_steps() -> None:
@@ -145,7 +156,7 @@ def test_torque_is_the_sum_of_all_loads_that_act() -> None:
     assert forces.load(bounds, mode)(0.0, 0.3, 4.0) == pytest.approx(2.0 - 2.0 - 1.6)
 
 
-def test_forces_go_on_straight_beyond_what_they_are_cut_at() -> None:
+def test_forces_go_on_beyond_what_they_are_cut_at() -> None:
     angle = np.radians([0.0, 60.0, 60.0, 200.0, 200.0, 360.0])
     table = Table(tuple(angle.tolist()), (1e5, 2e5, -1e5, 3e5, 0.0, 1e5))
     gas = Gas(pressure=table, absolute=False, stroke=2, interpolation="linear")
@@ -167,17 +178,18 @@ def test_forces_go_on_straight_beyond_what_they_are_cut_at() -> None:
     )
 
 
-def run_of(change: Array, *, whole: bool = True) -> Path:
+def run_of(change: Array) -> Path:
     """A run whose angle and speed are off by polynomials of the time."""
     time = np.linspace(0.0, 1.0, 41)
     theta, rate = np.polynomial.Polynomial([0.0, 3.0, *change]), None
     rate = theta.deriv()
     rows = np.column_stack([time, theta(time), rate(time), rate.deriv()(time)])
-    return Path(rows, (), Ending.COMPLETE, whole, 40, 40)
+    begin, end = (State(*row[:3].tolist(), 0.0) for row in rows[[0, -1]])
+    return Path((Stretch(begin, rows),), end, Ending.COMPLETE, 40, 40)
 
 
 @pytest.mark.parametrize(
-    ("shares", "whole", "clean"),
+    ("shares", "smooth", "clean"),
     [
         ((1.0, 0.25, 0.0625), True, True),
         ((1.0, 0.5, 0.25), True, False),
@@ -185,16 +197,17 @@ def run_of(change: Array, *, whole: bool = True) -> Path:
     ],
 )
 def test_runs_are_extrapolated_where_their_slopes_agree_to_order_two(
-    shares: tuple[float, ...], whole: bool, clean: bool
+    shares: tuple[float, ...], smooth: bool, clean: bool
 ) -> None:
     model = Model(COASTING)
     limits = Limits(1.0, (-math.inf, math.inf), 1000)
     runs = Runs(Forces(crank_train(COASTING)), model, start_of(COASTING), limits)
     model.close()
-    runs.paths = [run_of(1e-3 * share * np.array([1.0, 0.5]), whole=whole) for share in shares]
+    runs.forces.smooth = smooth
+    runs.paths = [run_of(1e-3 * share * np.array([1.0, 0.5])) for share in shares]
     runs.shaken = runs.paths[0]
     time = np.linspace(0.0, 1.0, 7)
-    answer, *checks = runs.motions()
-    true = np.abs(answer.at(time)[0] - 3.0 * time).max()
-    stated = max(np.abs(check.at(time)[0] - answer.at(time)[0]).max() for check in checks)
+    answer, *checks = (motion.at_times(time)[1] for motion in runs.solved())
+    true = np.abs(answer - 3.0 * time).max()
+    stated = max(np.abs(check - answer).max() for check in checks)
     assert (true < 1e-15) if clean else (0.02 * stated < true < stated)

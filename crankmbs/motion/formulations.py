@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from crankmbs.motion.assemble import Assembled
     from crankmbs.motion.base import Samples, Solution
     from crankmbs.motion.motion import Passes
-    from crankmbs.motion.multibody.account import Kept
+    from crankmbs.motion.multibody.free import Kept
+    from crankmbs.numerics.arrays import Array
 
 __all__ = ["FORMULATIONS", "Formulation", "serving"]
 
@@ -120,10 +121,25 @@ def _multibody(train: CrankTrain, rtol: float, cost_cap: float) -> Assembled:
     from crankmbs.motion.multibody import driven, free
 
     if train.scene.motion is not None:
-        return _of_law(train, driven.run(train, kinetostatic.run(train)))
+        sampled = kinetostatic.run(train)
+        residual = sampled.samples.energy_residual
+        return _of_law(train, _closed(driven.run(train, sampled), residual))
     solution, kept = free.run(train, rtol, cost_cap)
-    assembled = assemble(train, replace(solution, keep=partial(_account_of, kept)))
-    return replace(assembled, motion=partial(_passes_of, kept, solution.samples))
+    time = solution.samples.time
+    residual = 0.0 * time
+    if kept.motions:
+        residual = kinetostatic.energy_residual(kept.motions[0].pieces, train, time)
+    solution = replace(_closed(solution, residual), keep=partial(_account_of, kept))
+    motion = partial(_passes_of, kept, solution.samples)
+    return replace(assemble(train, solution), motion=motion)
+
+
+def _closed(solution: Solution, residual: Array) -> Solution:
+    """With the balance of energy of its motion [J], by the text of the others."""
+    samples = replace(solution.samples, energy_residual=residual)
+    rounding = 1e-14 * float(samples.computed["kinetic_energy"].max())
+    errors = {**solution.errors, "energy_residual": float(abs(residual).max()) + rounding}
+    return replace(solution, samples=samples, errors=errors)
 
 
 def _cost_of_multibody(scene: Scene) -> str:
@@ -137,18 +153,20 @@ def _account_of(kept: Kept) -> Account:
     from crankmbs.motion.observer import Followed, account_of
 
     of = partial(Followed, kept.train, kept.start, ending=kept.ending)
-    return account_of([of(each) for each in kept.stretches or [[]]], _HALVED)
+    pieces = [motion.pieces for motion in kept.motions] or [()]
+    return account_of([of(each) for each in pieces], _HALVED)
 
 
 def _passes_of(kept: Kept, samples: Samples) -> Passes:
     """The motion of these runs."""
     from crankmbs.motion.motion import Motion, Passes
 
-    if not kept.passes:
+    if not kept.motions:
         alone = Motion.of_one(kept.train, samples)
         return Passes(alone, (alone,))
     trains = kept.train, kept.train.perturbed, kept.train, kept.train
-    answer, *checks = (Motion(one, each) for one, each in zip(trains, kept.stretches, strict=False))
+    pairs = zip(trains, kept.motions, strict=False)
+    answer, *checks = (Motion(one, each.pieces) for one, each in pairs)
     return Passes(answer, tuple(checks), _HALVED)
 
 

@@ -14,7 +14,7 @@ from crankmbs.mechanics.inertia import inertia_alone, reduce
 from crankmbs.mechanics.speed import SpeedLaw, speed_law
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.account import Account
-from crankmbs.motion.base import Samples, Solution
+from crankmbs.motion.base import Samples, Segment, Solution
 from crankmbs.motion.cells import Cells
 from crankmbs.motion.driven import Driven, Way, begun_at, driven, monotone_stretches
 from crankmbs.motion.ending import Ending
@@ -24,7 +24,7 @@ from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.motion.states import inner_samples, table_of
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["account", "passes", "run"]
+__all__ = ["account", "energy_residual", "passes", "run"]
 
 _POINTS = (6, 8)  # of Gauss in a panel, in either look at what happens on the way
 _TOGETHER = 2048  # cells whose work is summed at once
@@ -49,7 +49,7 @@ def run(train: CrankTrain) -> Solution:
     final = bound if reached and not plan.until_time else None
     time, theta = plan.samples(stretches, lambda t: law.at_time(t)[0], law.time_at, final)
     _, omega, alpha = law.at_time(time)
-    residual = _energy_residual(driven(_way(train, law), stretches), train, time)
+    residual = energy_residual(driven(_way(train, law), stretches), train, time)
     computed = {} if firings is None else {"fuel": firings.at(time)}
     computed |= _applied(train, time, theta, omega)
     samples = Samples(time, theta, omega, alpha, residual, computed)
@@ -147,7 +147,7 @@ def _kept(
     return [(float(law.time_at(since, begin, end)[0]), end)]
 
 
-def _energy_residual(pieces: Iterable[Driven], train: CrankTrain, time: Array) -> Array:
+def energy_residual(pieces: Iterable[Segment], train: CrankTrain, time: Array) -> Array:
     """Kinetic energy gained since the first sample minus the work of gas, gravity, friction and
     drive, up to the ends of the cells in which the samples lie, shape (n,) [J]."""
     ends, gains = [time[:1]], [np.zeros(1)]

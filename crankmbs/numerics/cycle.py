@@ -71,21 +71,23 @@ class Cycle:
         a, b, c, d = self.coefficients[:, k]
         return np.asarray(((a * x + b) * x + c) * x + d)
 
-    def by_number(self) -> Callable[[float], float]:
-        """The same from number to number [rad], fifty times faster for one.
+    def by_number(self, low: float = -math.inf, high: float = math.inf) -> Callable[[float], float]:
+        """The same from number to number [rad], fifty times faster for one; below and above two
+        ends on by the cubic inside.
 
         >>> Cycle(np.array([0.0, 1.0]), np.array([[0.0], [0.0], [2.0], [5.0]])).by_number()(3.25)
         5.5
         """
         first, period = float(self.knots[0]) - NEAR, self.period
         starts = (self.knots[:-1] - self.knots[0]).tolist()
-        pieces = self.coefficients.T.tolist()
+        pieces, high = self.coefficients.T.tolist(), high - 2.0 * NEAR
 
         def value(angle: float) -> float:
-            x = (angle - first) % period
+            inside = low if angle < low else high if angle > high else angle
+            x = (inside - first) % period
             k = bisect_right(starts, x) - 1
             a, b, c, d = pieces[k]
-            x -= starts[k] + NEAR
+            x += angle - inside - starts[k] - NEAR
             return float(((a * x + b) * x + c) * x + d)
 
         return value

@@ -64,16 +64,16 @@ class Piecewise:
             return np.asarray(a + (b + c * x) * x)
         return self.of_piece(x, x)
 
-    def by_number(self) -> Callable[[float], float]:
-        """The same from number to number.
+    def by_number(self, low: float = -math.inf, high: float = math.inf) -> Callable[[float], float]:
+        """The same from number to number; below and above two ends on by the parabola inside.
 
-        >>> Piecewise.through((0.0, 2.0), (1.0, 5.0)).by_number()(1.0)
-        3.0
+        >>> Piecewise.through((0.0, 2.0), (1.0, 5.0)).by_number(0.0, 2.0)(3.0)
+        7.0
         """
-        knots, pieces = self.knots, self.pieces
+        knots, pieces, high = self.knots, self.pieces, math.nextafter(high, low)
 
         def value(x: float) -> float:
-            a, b, c = pieces[bisect_right(knots, x)]
+            a, b, c = pieces[bisect_right(knots, low if x < low else high if x > high else x)]
             return a + (b + c * x) * x
 
         return value

@@ -16,11 +16,12 @@ from matplotlib.figure import Figure
 from crankmbs.figures.style import STYLE, line_of
 from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.base import State
+from crankmbs.motion.cells import cell_of
 from crankmbs.motion.mode import begun
 from crankmbs.motion.multibody.answer import Answers
 from crankmbs.motion.multibody.forces import EVERYWHERE, Limits
 from crankmbs.motion.multibody.integrate import integrate
-from crankmbs.motion.multibody.runs import Motion
+from crankmbs.motion.multibody.runs import motion_of
 from crankmbs.scene.scene import Scene
 from validation.adapter import reference_motion, reference_variables
 from validation.case import Case
@@ -94,12 +95,10 @@ def _errors(ours: Scene, theirs: Scene, count: int) -> _Errors:
     with closing(Answers(train)) as answers:
         forces, model = answers.forces, answers.model
         paths = [integrate(forces, model, start, limits, float(step)) for step in steps]
-        angles = motion.theta.astype(np.float64)
-        runs = [
-            answers.free(motion, passed, angles, motion.at(passed)[1])
-            for motion in (Motion((path,), (1.0,), path.states) for path in paths)
-            for passed in [motion.times(angles, 0.0, motion.states[-1].time)]
-        ]
+        angles, runs = motion.theta.astype(np.float64), []
+        for passed in (motion_of(forces, path) for path in paths):
+            k = cell_of(np.array([piece.end.theta for piece in passed.pieces]), angles)
+            runs.append(answers.free(passed.modes, k, k, *passed.at(k, angles, in_time=False)))
     turned, peak = float(np.ptp(motion.theta)), _length(exact)
     late = [(own["time"] - motion.time) * motion.omega / turned for own in runs]
     missed = [{name: own[name] - exact[name] for name in _BEARING} for own in runs]

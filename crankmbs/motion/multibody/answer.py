@@ -10,35 +10,18 @@ from crankmbs.mechanics.geometry import top_position
 from crankmbs.mechanics.journals import of_journals, rocking_of_throws
 from crankmbs.mechanics.peaks import peak
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.mechanics.variables import EVERY, SUMS
+from crankmbs.mechanics.variables import EVERY
 from crankmbs.motion.base import Samples, Solution
-from crankmbs.motion.cells import Cells
+from crankmbs.motion.mode import Mode
 from crankmbs.motion.multibody.forces import Forces
 from crankmbs.motion.multibody.model import Consistent, Model
-from crankmbs.motion.multibody.runs import Motion
-from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.arrays import Array, Index
 
-__all__ = ["Answers", "rounding", "solution"]
+__all__ = ["Answers", "solution"]
 
 _ROUNDING = 1e-12
 
-_MOTION = ("time", "crank_angle", "crank_speed", "crank_acceleration", "energy_residual")
-
-
-def rounding(values: dict[str, Array]) -> dict[str, float]:
-    """What is left of every variable where nothing else errs: 1e-12 of its peak, and of the largest
-    of its unit 1e-14, of sums that may cancel 1e-13; of the energy residual 1e-14 of the kinetic
-    energy."""
-    peaks = {name: peak(each) for name, each in values.items()}
-    largest: dict[str, float] = {}
-    for name, size in peaks.items():
-        unit = EVERY[name].units
-        largest[unit] = max(largest.get(unit, 0.0), size)
-    least = {}
-    for name, size in peaks.items():
-        beside = 0.1 if name in SUMS else 0.01 if size else 0.0
-        least[name] = _ROUNDING * (size + beside * largest[EVERY[name].units])
-    return least | {"energy_residual": 0.01 * least["kinetic_energy"]}
+_MOTION = ("time", "crank_angle", "crank_speed", "crank_acceleration")
 
 
 def solution(
@@ -47,11 +30,21 @@ def solution(
     said: tuple[int, str],
     cost: tuple[int, int],
 ) -> Solution:
-    """What a run returns, where something errs beside rounding; cost : evaluations and steps."""
+    """What a run returns; cost : evaluations and steps.
+
+    Beside what errs otherwise, of every variable 1e-12 of its peak and 1e-13 of the largest of its
+    unit is left to rounding.
+    """
+    peaks, largest = {name: peak(each) for name, each in values.items()}, dict[str, float]()
+    for name, size in peaks.items():
+        largest[EVERY[name].units] = max(largest.get(EVERY[name].units, 0.0), size)
+    errors = {
+        name: errors[name] + _ROUNDING * (size + 0.1 * largest[EVERY[name].units]) * bool(size)
+        for name, size in peaks.items()
+    }
+    time, theta, omega, alpha = (values[name] for name in _MOTION)
     computed = {name: each for name, each in values.items() if name not in _MOTION}
-    time, theta, omega, alpha, residual = (values[name] for name in _MOTION)
-    samples = Samples(time, theta, omega, alpha, residual, computed)
-    errors = {name: errors[name] + least for name, least in rounding(values).items()}
+    samples = Samples(time, theta, omega, alpha, np.zeros_like(time), computed)
     return Solution(samples, *said, *cost, errors=errors)
 
 
@@ -69,15 +62,19 @@ class Answers:
         """Let go of what exudyn holds."""
         self.model.close()
 
-    def free(self, motion: Motion, time: Array, theta: Array, omega: Array) -> dict[str, Array]:
-        """Those of a free crank at times [s], crank angles [rad] and speeds [rad/s], shape (m,),
-        under the loads that act in a motion."""
-        forces, modes = self.forces, [state.mode for state in motion.states]
-        shares = np.array([mode.shares for mode in modes])[motion.before(time, theta)]
-        acts = np.array([forces.acting(mode.loads) for mode in modes])[motion.after(time)]
-        at = {"time": time, "crank_angle": theta, "crank_speed": omega}
+    def free(
+        self, modes: Sequence[Mode], k: Index, after: Index, time: Array, theta: Array, omega: Array
+    ) -> dict[str, Array]:
+        """Those of a free crank at times [s], crank angles [rad] and speeds [rad/s], shape (m,).
+
+        modes : what acts in each piece of the motion; k, after : in which pieces the samples lie,
+            at a cut in that before it, and at one in time in that after it
+        """
+        forces, at = self.forces, {"time": time, "crank_angle": theta, "crank_speed": omega}
+        acts = np.array([forces.acting(mode.loads) for mode in modes])[after]
         at |= {"external_torque": forces.torque(time, theta, omega, acts)}
-        at |= {"fuel": shares} if shares.size else {}
+        if forces.train.law is not None:
+            at["fuel"] = np.array([mode.shares for mode in modes])[k]
         if self._scene.force:
             at["applied_force"] = forces.applied(time, theta, omega, _senses(omega), acts)
         return at | self.consistent(at, driven=False)
@@ -95,42 +92,13 @@ class Answers:
         rests = omega[:, None] == 0.0
         friction = np.where(rests, motion.get("friction_force", friction), friction)
         applied = motion.get("applied_force", np.zeros_like(gas))
-        of_motion = {"alpha": "crank_acceleration"} if driven else {"torque": "external_torque"}
-        known = {name: motion[variable] for name, variable in of_motion.items()}
-        system = self.model.states(theta, omega, gas + friction + applied, **known)
+        drive = motion["crank_acceleration" if driven else "external_torque"]
+        push = gas + friction + applied
+        system = self.model.states(theta, omega, push, drive, free=not driven)
         values = self._of_bodies(system) | self._of_joints(system)
         values |= {"gas_force": gas, **self.forces.pressures(theta, gas)}
         values |= {} if self._scene.friction is None else {"friction_force": friction}
         return values | ({"applied_force": applied} if self._scene.force else {})
-
-    def residual(self, pieces: Sequence[Cells], time: Array) -> Array:
-        """Energy gained less work done [J] up to the ends of the cells in which times [s] lie, from
-        the begin of the first."""
-        ends = np.concatenate([pieces[0].time[0, :1], *(cells.time[:, -1] for cells in pieces)])
-        gained = np.cumsum(np.concatenate([[0.0], *map(self._gained, pieces)]))
-        return np.asarray(gained[np.minimum(np.searchsorted(ends, time), len(ends) - 1)])
-
-    def _gained(self, cells: Cells) -> Array:
-        """Energy gained in each cell less the work of gas, friction and torque in it [J]."""
-        forces = self.forces
-        time, theta, omega = map(cells.inner_reader(), (cells.time, cells.angle, cells.speed))
-        sense = np.full_like(theta, cells.acting.sense or 1.0)
-        shares = np.repeat(cells.shares, cells.time.shape[1], axis=0)
-        acts = np.tile(forces.acting(cells.acting.phases), (len(time), 1))
-        gas = forces.gas(theta, shares)
-        along = gas + forces.friction(theta, omega, gas, sense)
-        along += forces.applied(time, theta, omega, sense, acts)
-        if cells.acceleration is None:
-            torque = forces.torque(time, theta, omega, acts)
-        else:
-            alpha = cells.inner_reader()(cells.acceleration)
-            torque = self.model.states(theta, omega, along, alpha=alpha).torque
-        power = torque * omega + (along * forces.sliding(theta, omega)).sum(axis=1)
-        work = (power.reshape(cells.time.shape) * cells.spent) @ cells.weights
-        at, faster = (np.append(row[:1, 0], row[:, -1]) for row in (cells.angle, cells.speed))
-        none = np.zeros((len(at), len(self._banks)))
-        system = self.model.states(at, faster, none, alpha=0.0 * at)
-        return np.asarray(np.diff(self.model.energy(system)) - work)
 
     def _of_bodies(self, system: Consistent) -> dict[str, Array]:
         """Motion of all bodies, energy, and what they do to the frame by the balance of momentum.

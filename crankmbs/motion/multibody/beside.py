@@ -18,8 +18,9 @@ from crankmbs.motion.base import State
 from crankmbs.motion.mode import Mode, begun
 from crankmbs.motion.multibody.answer import Answers
 from crankmbs.motion.multibody.forces import EVERYWHERE, Limits
-from crankmbs.motion.multibody.free import follow
+from crankmbs.motion.multibody.free import refined
 from crankmbs.motion.multibody.integrate import enter
+from crankmbs.motion.multibody.runs import Motion, Runs
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["Shares", "consistent", "initial", "integrated"]
@@ -77,7 +78,14 @@ def integrated(
         law: Any = shares  # it is asked for no more
         train, firing = replace(train, law=law), shares.decided(None, *state)
         mode = Mode(phases, *shares.next(firing), firing)
-    return follow(train, State(*state, 0.0, mode), times, rtol, steps)
+    limits = Limits(float(times[-1]), EVERYWHERE, steps)
+
+    def places(answer: Motion) -> tuple[Array, Array]:
+        return times, answer.at_times(times)[1]
+
+    with closing(Answers(train)) as answers:
+        runs = Runs(answers.forces, answers.model, State(*state, 0.0, mode), limits)
+        return refined(runs, answers, rtol, places, by_angle=False)[:2]
 
 
 def consistent(train: CrankTrain, motion: Mapping[str, Array], *, driven: bool) -> dict[str, Array]:
@@ -100,5 +108,5 @@ def initial(train: CrankTrain, step: float) -> tuple[Array, Array, Array]:
     with closing(Answers(train)) as answers:
         state = State(0.0, theta, omega, 0.0, begun(train))
         enter(answers.model, answers.forces, state, 0.0, Limits(math.inf, EVERYWHERE, 0))
-        _, *arrays = answers.model.quiet_start(state[:3], step, driven=scene.motion is not None)
-    return tuple(arrays)
+        _, quiet = answers.model.quiet_start(state[:3], step, driven=scene.motion is not None)
+    return quiet.position[0], quiet.velocity[0], quiet.acceleration[0]

@@ -1,7 +1,7 @@
 """Gas, friction and loads: on whole arrays as they are, and number by number as exudyn calls them.
 
-While exudyn integrates, nothing jumps: between the crank angles, times and speeds at which a force
-jumps, or a load bends over speed, each goes on straight beyond. The run is cut there.
+While exudyn integrates, nothing jumps: a run is cut at the crank angles, times and speeds at which
+a force jumps or bends hard, and exudyn's last step goes beyond with the piece that ends there.
 """
 
 from __future__ import annotations
@@ -48,7 +48,6 @@ _JUMP = 1e-4  # of the largest value: less is a bend
 _MOST_CUTS = 60  # over the angle in a period: a table of more steps is run over as it is
 _MOST_BENDS = 12  # of a function of time or travel: more are run over
 _SAME = 1e-12  # relative: times nearer than this are one
-_SHARE = 1e-4  # of a range: over which a slope is taken
 _BESIDE = 1e-6  # rad: so far beyond a cut it is clear on which side a piston is
 
 
@@ -115,11 +114,6 @@ class Forces:
         declared = (law.python.times for law in laws if law.python)
         return tuple(every.union(times_of(scene.torque), *declared))
 
-    @property
-    def is_cut(self) -> bool:
-        """Whether a force jumps or bends anywhere over angle or time."""
-        return bool(len(self.angles) or self.times or not self.smooth)
-
     def acting(self, phases: Phases) -> list[bool]:
         """Which of the loads act, torques first."""
         return [phase is Phase.ACTING for phase in phases] or [True] * len(self.train.loads)
@@ -159,7 +153,8 @@ class Forces:
         scene, rubs = self.train.scene, self._friction
         signs = np.where(sense >= 0.0, *(slides(scene, theta, side) for side in (1.0, -1.0))).T
         dry = signs * (rubs.ring_force + rubs.ring_pressure * np.abs(gas))
-        return np.asarray(-dry - rubs.viscous * self.sliding(theta, omega))
+        sliding = (-closed_loops(scene, theta).x_1 * omega).T
+        return np.asarray(-dry - rubs.viscous * sliding)
 
     def applied(self, time: Array, theta: Array, omega: Array, sense: Array, acts: Array) -> Array:
         """Forces from outside on the pistons [N] towards the crank, shape (m, n), that slide in
@@ -168,10 +163,6 @@ class Forces:
         for push, when in zip(self.train.pushes, acts.T[first:], strict=True):
             total += np.where(when[:, None], push.forces(time, theta, omega, sense), 0.0)
         return total
-
-    def sliding(self, theta: Array, omega: Array) -> Array:
-        """Velocities of the pistons towards the crank [m/s], shape (m, n)."""
-        return np.asarray((-closed_loops(self.train.scene, theta).x_1 * omega).T)
 
     def torque(self, time: Array, theta: Array, omega: Array, acts: Array) -> Array:
         """Torque [N m] of all torques, shape (m,); acts : shape (m, loads), whether each does."""
@@ -182,18 +173,17 @@ class Forces:
 
     # number by number, on one stretch
 
-    def bounds(self, state: State, sense: float, limits: Limits, *, stops: bool = True) -> Bounds:
+    def bounds(self, state: State, sense: float, limits: Limits) -> Bounds:
         """What ends the stretch that begins in a state: the next time, angle or speed on either
         side; on one of them that beyond it.
 
-        sense : sign in which the speed leaves the state, and at rest the crank angle; stops :
-            whether it ends where loads bend over speed
+        sense : sign in which the speed leaves the state, and at rest the crank angle
         """
         time, theta, omega, _, mode = state
         ends = phase_ends(self.train.loads, mode.loads)
         speeds = {0.0, *ends[1]}
-        for parts in self._torques(mode) if stops else ():
-            speeds.update(parts.over_speed.bends if parts.over_speed else ())
+        for parts in self._torques(mode):
+            speeds.update(_cuts_of(parts.over_speed) if parts.over_speed else ())
             speeds.update(parts.function.speeds if parts.function else ())
         at = theta + 2.0 * KNOT * math.copysign(1.0, omega or sense)
         reach = 1.5 * self.train.period
@@ -213,7 +203,7 @@ class Forces:
         """Torque [N m] of the loads that act, of time [s], crank angle [rad] and speed [rad/s]."""
         parts = self._torques(mode)
         terms = [
-            (slot, _straight(part, *bounds[slot]))
+            (slot, part.by_number(*bounds[slot]))
             for each in parts
             for slot, part in enumerate((each.over_time, each.over_angle, each.over_speed))
             if part is not None
@@ -234,7 +224,7 @@ class Forces:
         """That on the piston of the cylinder k, which is there and slides with this sign."""
         rubs, phase = self._friction, float(self._phases[k])
         viscous, whole = rubs.viscous, list[Push]()
-        gas = _straight(self._gas(k, mode.shares), *bounds.angles)
+        gas = self._gas(k, mode.shares).by_number(*bounds.angles)
         terms = [(1, gas)]
         for law in self._laws(k, mode.loads):
             way = law.forward if slides > 0.0 else law.back
@@ -243,7 +233,7 @@ class Forces:
             ranges = *bounds[:2], travel
             for slot, part in enumerate((law.over_time, over_angle, way)):
                 if part is not None:
-                    terms.append((slot, _straight(part, *ranges[slot])))
+                    terms.append((slot, part.by_number(*ranges[slot])))
             viscous += law.viscous
             if law.python is not None:
                 whole.append(_at_cycle_angle(law.python.function, phase))
@@ -299,28 +289,6 @@ def _around(stops: Iterable[float], x: float, sense: float = 1.0) -> Range:
     ends = [-math.inf, *sorted(stops), math.inf]
     k = (bisect_right if sense > 0.0 else bisect_left)(ends, x, 1, len(ends) - 1)
     return ends[k - 1], ends[k]
-
-
-def _straight(part: Piecewise | Cycle, low: float, high: float) -> Callable[[float], float]:
-    """A function between two ends, number by number, and straight on beyond."""
-    function, scale = part.by_number(), min(high - low, 1.0)
-    if len(part.knots) == 0 or (math.isinf(high) and math.isinf(low)):
-        return function
-    high = min(high - 2.0 * KNOT * scale, math.nextafter(high, low))  # on a jump that after it
-    ends = {
-        x: (function(x), (function(x + d) - function(x)) / d)
-        for x, d in ((low, _SHARE * scale), (high, -_SHARE * scale))
-        if math.isfinite(x)
-    }
-
-    def value(x: float) -> float:
-        if low <= x <= high:
-            return function(x)
-        end = low if x < low else high
-        at, slope = ends[end]
-        return at + slope * (x - end)
-
-    return value
 
 
 def _cuts_of(part: Piecewise) -> tuple[float, ...]:

@@ -28,13 +28,13 @@ __all__ = ["Consistent", "Model"]
 
 exu: Any = exudyn  # its stubs are narrower than what it takes
 
-# of Newton's method, relative, and absolute as a share of the largest joint force at the start:
-# where forces are small beside what they cancel the first may lie below what is rounded; a relative
-# 1e-8 leaves errors that no halving shows, and passes near folds
-_TOLERANCES = ((1e-10, 1e-16), (1e-9, 1e-11))
+# of Newton's method, relative, and absolute as a share of the largest joint force at any start:
+# forces may be small beside what they cancel; a relative 1e-8 leaves errors that no halving shows
+_RELATIVE, _ABSOLUTE = 1e-10, 1e-12
 _BLOCK = 1000  # states that are solved for together
 _ON = 1e-11  # rad: of a bound, so near the crank is on it
 _BESIDE = 1e-10  # the same of a speed, relative; rad/s near rest
+_ROUNDED = float(np.finfo(float).eps)  # rad: of an angle, which a step makes a speed of
 
 
 class Consistent(NamedTuple):
@@ -79,7 +79,7 @@ class Model:
         self.scene, self.mechanism = scene, mechanism_of(scene)
         self.torque: Callable[[float, float, float], float] = lambda time, theta, omega: 0.0
         self.pushes: Sequence[Push] = ()
-        self._begin = self._largest = 0.0
+        self._begin, self._largest = 0.0, 1.0
         pushed = bool(scene.gas or scene.friction or scene.force)
         self._container, self._system = build(
             self.mechanism, self._push if pushed else None, self._torque
@@ -113,23 +113,24 @@ class Model:
 
     # over time
 
-    def start(self, time: float, theta: float, omega: float, *, driven: bool = False) -> Consistent:
-        """The system in a state, free or at constant speed, under the forces that it was given."""
-        at, faster = np.array([theta]), np.array([omega])
-        loop = closed_loops(self.scene, at)
-        down, speeds = displacements(self.scene, loop)[:, 0], -loop.x_1[:, 0] * omega
-        places = zip(self.pushes, down.tolist(), speeds.tolist(), strict=False)
-        push = np.zeros((1, len(down)))
-        push[0, : len(self.pushes)] = [each(time, theta, *place) for each, *place in places]
-        if driven:
-            return self.states(at, faster, push, alpha=np.zeros(1))
-        return self.states(at, faster, push, torque=np.array([self.torque(time, theta, omega)]))
+    def start(self, time: Array, theta: Array, omega: Array, *, driven: bool = False) -> Consistent:
+        """The system in states of shape (m,), free or at constant speed, under the forces that it
+        was given."""
+        loop = closed_loops(self.scene, theta)
+        down, speeds = displacements(self.scene, loop), -loop.x_1 * omega
+        push = np.zeros_like(down.T)
+        for k, force in enumerate(self.pushes):
+            push[:, k] = [*map(force, *(row.tolist() for row in (time, theta, down[k], speeds[k])))]
+        drive = np.zeros_like(theta)
+        if not driven:
+            drive[:] = [*map(self.torque, time.tolist(), theta.tolist(), omega.tolist())]
+        return self.states(theta, omega, push, drive, free=not driven)
 
     def quiet_start(
         self, state: tuple[float, float, float], step: float, *, driven: bool = False
-    ) -> tuple[Any, ...]:
-        """Speed and acceleration of the crank in the method's own smooth solution, and position,
-        velocity and acceleration from which the multipliers do not ring.
+    ) -> tuple[tuple[float, float], Consistent]:
+        """Speed and acceleration of the crank in the method's own smooth solution, and the state
+        with position, velocity and acceleration from which the multipliers do not ring.
 
         A run that began with the speed v itself would have between its first two rows an error that
         does not fall as h^2 at a fixed time.
@@ -137,18 +138,14 @@ class Model:
         driven : at constant speed
         """
         time, theta, omega = state
-        here = self.start(*state, driven=driven)
-        self._largest = max(self._largest, float(np.abs(here.hinges).max()))
-        alpha = float(here.acceleration[0, 2])
-        before, after = (
-            self.start(
-                time + t, theta + (omega + 0.5 * alpha * t) * t, omega + alpha * t, driven=driven
-            )
-            for t in (-0.5 * step, 0.5 * step)
-        )
-        crank, *shifts = quiet_shifts((after.acceleration[0] - before.acceleration[0]) / step, step)
+        here = self.start(*(np.array([each]) for each in state), driven=driven)
+        alpha, t = here.acceleration.item(2), np.array([-0.5, 0.5]) * step
+        beside = time + t, theta + (omega + 0.5 * alpha * t) * t, omega + alpha * t
+        before, after = self.start(*beside, driven=driven).acceleration
+        crank, *shifts = quiet_shifts((after - before) / step, step)
         smooth = omega + float(crank[2]) if omega else 0.0  # at rest it is not to turn back
-        return (smooth, alpha), *(x[0] + shift for x, shift in zip(here[:3], shifts, strict=True))
+        q, v, a = (rows + shift for rows, shift in zip(here[:3], shifts, strict=True))
+        return (smooth, alpha), here._replace(position=q, velocity=v, acceleration=a)
 
     def run(
         self,
@@ -168,78 +165,56 @@ class Model:
         rods = [(5 + 5 * k, c.bank) for k, c in enumerate(self.scene.cylinders)]
         (_, end), (low, high), (slow, fast) = bounds
         low, high = low - _ON, high + _ON
-        slow, fast = slow - _BESIDE * max(abs(slow), 1.0), fast + _BESIDE * max(abs(fast), 1.0)
-        begin, outside = state[0], False
+        slow -= _BESIDE * max(abs(slow), 1.0) + _ROUNDED / step
+        fast += _BESIDE * max(abs(fast), 1.0) + _ROUNDED / step
+        outside = False
 
         def note(_: object, _time: float) -> bool:  # before each step, and not after the last
             nonlocal outside
             if any(abs(self._q.item(at) - bank) > 0.5 * np.pi for at, bank in rods):
                 return False
-            time, theta, omega = begin + step * len(rows), self._q.item(2), self._v.item(2)
+            time, theta, omega = state[0] + step * len(rows), self._q.item(2), self._v.item(2)
             rows.append((time, theta, omega, self._a.item(2)) if rows else (*state[:2], *smooth))
             inside = time < end and low < theta < high and slow <= omega <= fast
             outside = len(rows) > 1 and not inside
             return not outside
 
-        self._begin, (smooth, *start) = begin, self.quiet_start(state, step)
+        self._begin, (smooth, quiet) = state[0], self.quiet_start(state, step)
+        data, initial = self._system.systemData, exu.ConfigurationType.Initial
+        data.SetODE2Coordinates(quiet.position[0], initial)
+        data.SetODE2Coordinates_t(quiet.velocity[0], initial)
+        data.SetODE2Coordinates_tt(quiet.acceleration[0], initial)
         self._system.SetPreStepUserFunction(note)
-        settings, iterations, solved = settings_of(step, most, stiff=stiff), 0, False
-        for relative, share in _TOLERANCES:
-            rows.clear()
-            settings.timeIntegration.newton.relativeTolerance = relative
-            settings.timeIntegration.newton.absoluteTolerance = max(share * self._largest, 1e-12)
-            self._set(*start)
-            with _quiet(), suppress(RuntimeError, ValueError):  # Newton fails, a matrix is singular
-                solved = self._system.SolveDynamic(settings)
-            iterations += int(self._system.sys["dynamicSolver"].it.newtonStepsCount)
-            if outside or solved:
-                break
+        settings = settings_of(step, most, stiff=stiff)
+        self._largest = max(self._largest, float(np.abs(quiet.hinges).max()))
+        newton = settings.timeIntegration.newton
+        newton.relativeTolerance = _RELATIVE
+        newton.absoluteTolerance = _ABSOLUTE * self._largest
+        with _quiet(), suppress(RuntimeError, ValueError):  # Newton fails, a matrix is singular
+            self._system.SolveDynamic(settings)
+        iterations = int(self._system.sys["dynamicSolver"].it.newtonStepsCount)
         ending = Ending.CALLED_OFF if len(rows) == most else Ending.DIVERGED
         return Run(np.array(rows), Ending.COMPLETE if outside else ending, iterations)
-
-    def _set(self, position: Array, velocity: Array, acceleration: Array) -> None:
-        """Let exudyn begin there."""
-        data, initial = self._system.systemData, exu.ConfigurationType.Initial
-        data.SetODE2Coordinates(position, initial)
-        data.SetODE2Coordinates_t(velocity, initial)
-        data.SetODE2Coordinates_tt(acceleration, initial)
 
     # at given states
 
     def states(
-        self,
-        theta: Array,
-        omega: Array,
-        push: Array,
-        *,
-        torque: Array | None = None,
-        alpha: Array | None = None,
+        self, theta: Array, omega: Array, push: Array, drive: Array, *, free: bool
     ) -> Consistent:
         """The system at crank angles [rad] and speeds [rad/s] of shape (m,), under given forces.
 
-        push : shape (m, n) [N], on each piston towards the crank; of a free crank its torque, of a
-        driven one its acceleration, shape (m,) [N m, rad/s2]
+        By the tangent u of J u = 0, u_theta = 1,
+
+            alpha = u (f - M w) / (u M u),    q'' = u alpha + w,    J w = -J' q',  w_theta = 0
+
+        push : shape (m, n) [N], on each piston towards the crank; drive : shape (m,), the torque on
+        a free crank [N m], or the acceleration of a driven one [rad/s2]
         """
-        drive = alpha if torque is None else torque
-        assert drive is not None
-        rows = theta, omega, push, drive
-        blocks = ([row[k : k + _BLOCK] for row in rows] for k in range(0, len(theta), _BLOCK))
-        parts = [self._block(*block, free=torque is not None) for block in blocks]
-        return Consistent(*map(np.concatenate, zip(*parts, strict=True)))
-
-    def energy(self, at: Consistent) -> Array:
-        """Kinetic energy, and that of height [J], shape (m,)."""
-        return np.asarray(0.5 * at.velocity**2 @ self.mass - at.position @ self.weight)
-
-    def _block(
-        self, theta: Array, omega: Array, push: Array, drive: Array, *, free: bool
-    ) -> Consistent:
-        """The states of one block, by the tangent u of J u = 0, u_theta = 1.
-
-        alpha = u (f - M w) / (u M u),    q'' = u alpha + w,    J w = -J' q',  w_theta = 0
-
-        drive : the torque on a free crank, or the acceleration of a driven one
-        """
+        if len(theta) > _BLOCK:
+            cut, rows = range(_BLOCK, len(theta), _BLOCK), (theta, omega, push, drive)
+            blocks = zip(*(np.split(row, cut) for row in rows), strict=True)
+            parts = (self.states(*block, free=free) for block in blocks)
+            return Consistent(*map(np.concatenate, zip(*parts, strict=True)))
         q, ahead = closed(self.scene, theta), np.zeros(len(theta))
         jacobian, _, open_by = self._constraints(q)
         q = q - np.linalg.solve(jacobian, np.column_stack([open_by, ahead])[..., None])[..., 0]
@@ -250,8 +225,7 @@ class Model:
         v = u * omega[:, None]
         turning = np.einsum("mcb,mb->mc", bend, v[:, self._turns] ** 2)
         w = -np.linalg.solve(jacobian, np.column_stack([turning, ahead])[..., None])[..., 0]
-        force = self.weight + push @ self._pushed
-        alpha = drive
+        force, alpha = self.weight + push @ self._pushed, drive
         if free:
             force[:, 2] += drive
             alpha = ((force - w * self.mass) * u).sum(axis=1) / (u**2 @ self.mass)

@@ -1,4 +1,4 @@
-"""A free run at steps h, h/2, h/4, ...: one motion, and one that is as far off as it may be.
+"""A free run at steps h, h/2, h/4, ...: one motion, and others that are as far off as it may be.
 
 How fine the steps become follows from the error and from a number of steps, never from a clock.
 """
@@ -6,86 +6,127 @@ How fine the steps become follows from the error and from a number of steps, nev
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import replace
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
 from crankmbs.errors import FormulationError
-from crankmbs.mechanics.peaks import peak
 from crankmbs.motion.base import State
+from crankmbs.motion.cells import Acting, Cells, cell_of
 from crankmbs.motion.ending import Ending
+from crankmbs.motion.mode import Mode
 from crankmbs.motion.multibody.cost import STEPS_A_TURN
 from crankmbs.motion.multibody.forces import Forces, Limits
-from crankmbs.motion.multibody.integrate import Path, acceleration, integrate
+from crankmbs.motion.multibody.integrate import Path, enter, integrate
 from crankmbs.motion.multibody.model import Model
 from crankmbs.numerics.arrays import Array, Index
-from crankmbs.numerics.cycle import NEAR
-from crankmbs.numerics.roots import invert_monotone
+from crankmbs.numerics.lagrange import ends_and_nodes
 
-__all__ = ["Motion", "Runs"]
+__all__ = ["Motion", "Piece", "Runs", "motion_of"]
 
 _RETRIES = 4  # with a quarter of the step each time, where exudyn fails
 _UNTOUCHED = 0.98  # of the time to where it fails: before it goes wrong
 _EPS = float(np.finfo(float).eps)
 _STUCK = 1e-9  # rad/s2
 _SHAKEN = 1e-12  # of the crank angle: how far off a run begins that shows what rounding grows to
+_SAME = 1e-11  # relative: times nearer than this are one
+_STEPS = 4  # in a cell
+_STAGES = 4  # of Gauss in it: polynomials of degree 5, where those of the steps are of degree 3
 _HELD = "a jump of the loads drives the speed back from both sides"
 _NO_STEP = "exudyn's Newton iteration does not converge"
 
 
-@dataclass(frozen=True)
-class Motion:
-    """A weighted sum of runs.
+class Piece(NamedTuple):
+    """A part of a motion in which the crank turns one way and nothing jumps."""
 
-    paths, weights : of each; states : where its stretches begin, and the last one ends
-    """
+    begin: State
+    end: State
+    decisions: tuple[State, ...]
+    cells: Cells
 
-    paths: tuple[Path, ...]
-    weights: tuple[float, ...]
-    states: tuple[State, ...]
 
-    def at(self, time: Array) -> Array:
-        """Crank angle [rad] and speed [rad/s] at times, shape (2, p)."""
-        pairs = zip(self.paths, self.weights, strict=True)
-        return np.asarray(sum(weight * path.at(time) for path, weight in pairs if weight))
+class Motion(NamedTuple):
+    """A motion as it was integrated, from cut to cut."""
 
-    @cached_property
-    def grid(self) -> Array:
-        """Times of the steps of the finest run, each once."""
-        return np.unique(self.paths[-1].rows[:, 0])
-
-    def until(self, bound: float | None) -> float:
-        """Where it ends [s]: at a crank angle [rad] that it reaches a hair before or after its last
-        state, or else there."""
-        time = self.states[-1].time
-        angle, speed = self.at(np.array([time]))[:, 0].tolist()
-        return time if bound is None or not speed else time + (bound - angle) / speed
-
-    def times(self, theta: Array, begin: float, end: float) -> Array:
-        """When it passes angles [rad] in a stretch [s]."""
-        inside = self.grid[(self.grid > begin) & (self.grid < end)]
-        edges = np.concatenate([[begin], inside, [end]])
-        at = self.at(edges)[0]
-        sign = 1.0 if at[-1] >= at[0] else -1.0
-        k = np.clip(np.searchsorted(sign * at, sign * theta) - 1, 0, len(edges) - 2)
-        return invert_monotone(lambda t: tuple(self.at(t)), theta, edges[k], edges[k + 1])
-
-    def after(self, time: Array) -> Index:
-        """Which of its states begins the stretch at times; where two meet the later one."""
-        return np.searchsorted(self._edges, time * (1.0 + 1e-11), side="right")
-
-    def before(self, time: Array, theta: Array) -> Index:
-        """The same of the earlier one, at the times of crank angles."""
-        k = np.searchsorted(self._edges, time, side="right")
-        angles = np.array([state.theta for state in self.states])
-        for _ in range(2):  # where something else is cut at the same angle, too
-            k = np.where((k > 0) & (np.abs(theta - angles[k]) < NEAR), k - 1, k)
-        return k
+    pieces: tuple[Piece, ...]
 
     @property
-    def _edges(self) -> Array:
-        return np.array([state.time for state in self.states[1:-1]])
+    def ends(self) -> Array:
+        """When its pieces end [s]."""
+        return np.array([piece.end.time for piece in self.pieces])
+
+    @property
+    def modes(self) -> list[Mode]:
+        """What acts in its pieces."""
+        return [piece.begin.mode for piece in self.pieces]
+
+    def at(self, k: Index, values: Array, *, in_time: bool) -> Array:
+        """Time, crank angle and speed in the pieces k at times [s], or else at crank angles [rad],
+        shape (3, p); at the end of a piece that does not come so far."""
+        read = np.empty((3, len(values)))
+        for number in np.unique(k):
+            which = np.flatnonzero(k == number)
+            cells = self.pieces[number].cells
+            rows = np.array([cells.time, cells.angle, cells.speed])
+            read[:, which] = cells.values(rows, *cells.located(values[which], in_time=in_time))
+        return read
+
+    def after(self, time: Array) -> Index:
+        """In which of its pieces times lie, where two meet in the later one."""
+        return np.searchsorted(self.ends[:-1], time * (1.0 + _SAME), side="right")
+
+    def at_times(self, time: Array) -> Array:
+        """The same at times, where two pieces meet that of the earlier one."""
+        return self.at(cell_of(self.ends, time), time, in_time=True)
+
+
+def motion_of(
+    forces: Forces, path: Path, table: Array | None = None, places: list[Array] | None = None
+) -> Motion:
+    """The motion of a run; or with its decisions that of a table as `_table` gives it."""
+    places = _places(path) if places is None else places
+    edges = np.cumsum([0, *map(len, places)])
+    table = _table(path, places) if table is None else table
+    begin, pieces = path.stretches[0].begin, list[Piece]()
+    after = [*(stretch.begin for stretch in path.stretches[1:]), path.end]
+    for stretch, (low, high), last in zip(path.stretches, pairwise(edges), after, strict=True):
+        time, angle, speed = table[:, low:high]
+        mode, sense = stretch.begin.mode, float(np.sign(angle[-1, -1] - angle[0, 0]))
+        shares, acts = np.array([mode.shares]), np.array([forces.acting(mode.loads)])
+        acting = Acting(sense, phases=mode.loads)
+        cells = Cells(time, angle, speed, acting, shares.repeat(len(time), axis=0))
+        inside = cells.inner_reader()  # at its ends loads may jump
+        at = inside(time), inside(angle), inside(speed)
+        outside = forces.torque(*at, acts.repeat(time.size, axis=0)).reshape(time.shape)
+        end = last._replace(time=time.item(-1), theta=angle.item(-1), omega=speed.item(-1))
+        pieces.append(Piece(begin, end, (), replace(cells, outside=outside)))
+        begin = end
+    return Motion(tuple(pieces))
+
+
+def _places(path: Path) -> list[Array]:
+    """Where in the stretches of a run its cells of a few steps have their nodes, as shares of each,
+    shape (cells, nodes)."""
+    nodes, places = ends_and_nodes(_STAGES).places, []
+    for _, rows in path.stretches:
+        edges = np.append(rows[:-1:_STEPS, 0] - rows[0, 0], rows[-1, 0] - rows[0, 0])
+        shares = edges / edges[-1]
+        places.append(shares[:-1, None] + np.diff(shares)[:, None] * nodes)
+        places[-1][:, -1] = shares[1:]
+    return places
+
+
+def _table(path: Path, places: list[Array]) -> Array:
+    """Time, crank angle and speed of a run at places in each of its stretches, shape (3, cells,
+    nodes).
+
+    Cuts fall at other times in each run. At the same share of a stretch all runs are smooth in the
+    step, so that their differences are there what they err by.
+    """
+    pairs = zip(path.stretches, places, strict=True)
+    return np.concatenate([stretch.at(each) for stretch, each in pairs], axis=1)
 
 
 class Runs:
@@ -94,9 +135,13 @@ class Runs:
     moves : False where the crank stays at rest
     ending : of the runs, once the first is made
     shaken : the coarsest run again, from a start that is hardly off
+    motions : the answer, and motions as far off as it may be; of one run none
+    rounded : whether rounding has grown beyond what the steps err by
     """
 
     shaken: Path
+    motions: tuple[Motion, ...] = ()
+    rounded = False
 
     def __init__(self, forces: Forces, model: Model, start: State, limits: Limits) -> None:
         self.forces, self.model, self.start = forces, model, start
@@ -106,9 +151,9 @@ class Runs:
         self.ending = Ending.COMPLETE if self.moves else Ending.UNMOVED
 
     @property
-    def states(self) -> tuple[State, ...]:
-        """Where the stretches of the finest run begin, and where it ends."""
-        return self.paths[-1].states if self.paths else (self.start,)
+    def end(self) -> State:
+        """Where the finest run ends."""
+        return self.paths[-1].end if self.paths else self.start
 
     @property
     def steps(self) -> int:
@@ -126,8 +171,8 @@ class Runs:
         if not self.moves:
             return False
         path = self._coarse()
-        self.ending, reached = path.ending, path.states[-1]
-        self.moves = len(path.states) > 1
+        self.ending, reached = path.ending, path.end
+        self.moves = bool(path.stretches)
         if not self.moves and (path.ending is not Ending.HELD or self.start.omega):
             why = _HELD if path.ending is Ending.HELD else _NO_STEP
             raise FormulationError(
@@ -142,6 +187,7 @@ class Runs:
             return False
         off = math.copysign(_SHAKEN * (1.0 + abs(there)), reached.theta - there)
         self.shaken = self._run(start=self.start._replace(theta=there + off))
+        self.motions = (motion_of(self.forces, path),)
         return self.halve() and self.halve()
 
     def _coarse(self) -> Path:
@@ -154,7 +200,7 @@ class Runs:
             before = path, self._stiff, self._step
             self._stiff, self._step = True, 0.25 * self._step
             path = self._run(most)
-            further = _UNTOUCHED * path.states[-1].time > before[0].states[-1].time
+            further = _UNTOUCHED * path.end.time > before[0].end.time
             if path.ending is Ending.DIVERGED and not further:
                 path, self._stiff, self._step = before
                 break
@@ -167,6 +213,7 @@ class Runs:
         if path.ending is not self.paths[-1].ending:
             return False
         self.paths.append(path)
+        self.motions = self.solved()
         return True
 
     def _run(self, most: int | None = None, start: State | None = None) -> Path:
@@ -179,44 +226,38 @@ class Runs:
         """Whether the steps suffice for one more."""
         return self.steps + 2 * self.paths[-1].steps <= self._limits.steps
 
-    @property
-    def rounded(self) -> bool:
-        """Whether rounding has grown beyond what the steps err by."""
-        answer, *checks = self.motions()
-        grid = self.paths[0].rows[:, 0]
-        *steps, rounding = (peak(each.at(grid)[0] - answer.at(grid)[0]) for each in checks)
-        return rounding > max(steps)
-
-    def motions(self) -> list[Motion]:
-        """The answer, and motions as far off as it may be; of one run none.
+    def solved(self) -> tuple[Motion, ...]:
+        """The answer, and its checks.
 
         With f, f', ... the runs, coarse to fine, the answers E are (4 f' - f)/3 where the last
         three runs differ as errors of h^2 do and loads jump nowhere within a step, and else f'
         alone. The last answer is checked by the one before, and by a motion that is off by what the
         one before that was off by, over 16 or, at order 1, over 2: where in its last step a run is
         cut differs from run to run, and two answers may agree by chance. The last check is off by
-        what the rounding of all steps grows to, as they do at random.
+        what the rounding of all steps grows to, as they do at random. A run that is cut another
+        number of times than the finest is compared as it is.
         """
-        paths, unit = (self.shaken, *self.paths), np.eye(len(self.paths) + 1)
-        answers, share = unit[1:], 2.0
-        if len(self.paths) > 2 and paths[-1].whole and self._is_clean():
-            answers, share = (4.0 * unit[2:] - unit[1:-1]) / 3.0, 16.0
-        checks = [*answers[-2:-1]]
+        forces, fine = self.forces, self.paths[-1]
+        alike = [path for path in self.paths if len(path.stretches) == len(fine.stretches)]
+        if self.paths[-2] is not alike[-2:][0]:
+            return motion_of(forces, fine), motion_of(forces, self.paths[-2])
+        places, share = _places(fine), 2.0
+        tables = answers = [_table(path, places) for path in alike]
+        if len(alike) > 2 and forces.smooth and _is_clean(*tables[-3:]):
+            answers, share = [(4.0 * f - c) / 3.0 for c, f in pairwise(tables)], 16.0
+        answer, checks = answers[-1], answers[-2:-1]
         if len(answers) > 2:
-            checks.append(answers[-1] + (answers[-3] - answers[-1]) / share)
-        if checks:
-            rounded = math.sqrt(paths[-1].steps) * _EPS / _SHAKEN
-            checks.append(answers[-1] + rounded * (unit[0] - unit[1]))
-        before = self.paths[-2:][0].states  # with decisions of its own
-        weighted = [(answers[-1], self.states), *((each, before) for each in checks)]
-        return [Motion(paths, tuple(weights.tolist()), states) for weights, states in weighted]
-
-    def _is_clean(self) -> bool:
-        coarse, middle, fine = self.paths[-3:]
-        first, second, third = (path.at(coarse.rows[:, 0]) for path in (coarse, middle, fine))
-        change, before = third - second, second - first
-        apart = np.abs(before - 4.0 * change).max(axis=1)
-        return bool(np.all(apart <= np.abs(change).max(axis=1)))
+            checks.append(answer + (answers[-3] - answer) / share)
+        if self.paths[0] is alike[0] and len(self.shaken.stretches) == len(fine.stretches):
+            grown = math.sqrt(fine.steps) * _EPS / _SHAKEN
+            rounding = grown * (_table(self.shaken, places) - tables[0])
+            most = max(_largest(each - answer, answer)[0] for each in checks)
+            self.rounded = bool(_largest(rounding, answer)[0] > most)
+            checks.append(answer + rounding)
+        if len(forces.angles) or forces.times:  # what lies beside a jump may lie on either side
+            checks += [2.0 * answer - each for each in checks]
+        pairs = [(fine, answer), *((self.paths[-2], each) for each in checks)]  # with its decisions
+        return tuple(motion_of(forces, path, each, places) for path, each in pairs)
 
     def _coarsest(self) -> tuple[float, bool]:
         """A step [s] to begin with, and whether the crank will move at all.
@@ -227,11 +268,25 @@ class Runs:
         speed, end = abs(self.start.omega), self._limits.time
         moves = True
         if speed == 0.0:
-            leaves = acceleration(self.model, self.forces, self.start)
-            alpha = abs(leaves or 0.0)
+            nowhere = Limits(math.inf, (-math.inf, math.inf), 0)
+            entered = enter(self.model, self.forces, self.start, 0.0, nowhere)
+            alpha = abs(entered[1]) if entered else 0.0
             steady = all(load.is_steady for load in self.forces.train.loads)
-            moves = leaves is None or alpha > _STUCK or not steady
+            moves = entered is None or alpha > _STUCK or not steady
             speed = min(math.sqrt(4.0 * math.pi * alpha), alpha * end)
         turn = 2.0 * math.pi / speed if speed > 0.0 else math.inf
         longest = 1.0 if math.isinf(end) else end - self.start.time
         return min(turn, longest) / STEPS_A_TURN, moves
+
+
+def _largest(off: Array, motion: Array) -> Array:
+    """By how much a motion is off at most in the crank angle at equal times, and in the speed."""
+    late = off[1] - motion[2] * off[0]
+    return np.array([np.abs(late).max(), np.abs(off[2]).max()])
+
+
+def _is_clean(coarse: Array, middle: Array, fine: Array) -> bool:
+    """Whether three runs differ as errors of h^2 do, at the ends of cells: on steps of each."""
+    change, before, fine = (x[..., [0, -1]] for x in (fine - middle, middle - coarse, fine))
+    allowed = _largest(change, fine) + 4.0 * _EPS * np.abs(fine[1:]).max(axis=(1, 2))
+    return bool(np.all(_largest(before - 4.0 * change, fine) <= allowed))
