@@ -229,20 +229,20 @@ def test_a_function_with_its_kinks_costs_what_the_table_does(formulation):
 
     force = Force(push, kink_displacements=(0.03,))
     scene = replace(
-        machine(table, speed=2.0, until="20 s"),
+        machine(table, speed=4.0, until="20 s"),
         friction=Friction(ring_force=1.5),
         gravity=Gravity(acceleration=9.81, angle=-math.pi / 2),
     )
     of_table = simulate(scene, formulation=formulation)
     result = simulate(scene.with_(force=(force,)), formulation=formulation)
-    assert result.message == of_table.message
+    assert result.message.startswith(of_table.message)
     assert result.message.startswith("at rest at")
     assert list(result.events["kind"].values) == list(of_table.events["kind"].values)
     for name in ("time", "crank_angle"):
         ends = [float(each.data[name].values[-1]) for each in (result, of_table)]
         errors = [each.data[name].error_estimate for each in (result, of_table)]
         assert ends[0] == pytest.approx(ends[1], abs=sum(errors))
-    assert result.cost.evaluations < 8 * of_table.cost.evaluations
+    assert result.cost.evaluations < 6 * of_table.cost.evaluations
 
 
 def test_a_function_that_jumps_with_the_sense_holds_until_it_is_overcome():
