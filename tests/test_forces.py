@@ -376,9 +376,7 @@ def test_rigid_bodies_feel_the_same():
     """Every kind at a prescribed speed."""
     forces = [replace(force, cylinder=2) for force, _ in KINDS.values()]
     scene = driven(*forces, until="0.1 s", layout=TWO)
-    bodies, exact = (
-        simulate(scene, formulation=name).data for name in ("multibody", "kinetostatic")
-    )
+    bodies, exact = (simulate(scene, formulation=by).data for by in ("multibody", "kinetostatic"))
     for name in ("applied_force", "piston_pin_force_x", "external_torque"):
         peak = np.max(np.abs(exact[name].values))
         np.testing.assert_allclose(bodies[name].values, exact[name].values, atol=1e-3 * peak)
@@ -398,5 +396,5 @@ def test_a_figure_shows_the_force_over_the_angle():
     assert "wall" in below.get_ylabel()
     curve = max(above.lines, key=lambda line: len(line.get_ydata())).get_ydata()
     size = 1e3 if "[kN]" in above.get_ylabel() else 1.0
-    peak = np.max(np.abs(result.data["applied_force"].values))
-    assert size * np.nanmax(np.abs(curve)) == pytest.approx(peak, rel=1e-9)
+    applied = np.abs(result.data["applied_force"].values)
+    assert size * np.nanmax(np.abs(curve)) == pytest.approx(np.max(applied), rel=1e-9)
