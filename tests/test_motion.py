@@ -148,8 +148,8 @@ def test_a_largest_value_lies_anywhere(place):
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_largest_value_at_a_knot_is_that_of_its_own_side(side):
     """Rising to a knot and dropping there, or jumping up there and falling: exact, no hair off."""
-    nodes = nodes_of(simulate(load_scene("yi_diesel")).passes.answer)
-    knot = float(nodes.motion.cells[0].angle[40, 0])
+    motion = simulate(load_scene("yi_diesel")).passes.answer
+    nodes, knot = nodes_of(motion), float(motion.cells[0].angle[40, 0])
 
     def saw(variables):
         ahead = side * (variables["crank_angle"] - knot)
