@@ -55,8 +55,8 @@ def test_a_byte_order_mark_is_no_part_of_the_header(tmp_path):
         (
             "time_s;torque_Nm\n0;1\n",
             ": the header must name exactly one column time_s | time_ms, with commas between the "
-            'columns; "time_s;torque_Nm" came; write it with commas between the columns and decimal '
-            "points",
+            'columns; "time_s;torque_Nm" came; write it with commas between the columns and '
+            "decimal points",
         ),
         (
             "time_s,time_s,torque_Nm\n0,0,1\n",
