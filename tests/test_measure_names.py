@@ -146,3 +146,10 @@ def test_an_option_is_named_where_its_measure_is_unknown(tmp_path, monkeypatch):
         assert done.stderr.startswith(
             f'error: {option}"foo" is no measure of these cases; there ar'
         )
+
+
+def test_of_swings_a_sweep_has_no_means_over_the_angle_turned():
+    scene = load_scene("coasting").with_(start__speed="0 rpm", run__until="2 s")
+    row = row_of(simulate(scene), None)
+    assert not {"mean_speed", "piston_speed", "crank_torque", "external_torque"} & set(row)
+    assert {"torque_max", "side_force_mean", "highest_speed"} < set(row)

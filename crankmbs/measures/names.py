@@ -12,6 +12,8 @@ from crankmbs.scene.scene import Scene
 
 __all__ = ["Angles", "Named", "angles_of", "names_of", "signless", "values_of"]
 
+_OVER_ANGLE = "mean_speed", "piston_speed", "crank_torque", "external_torque"
+
 Angles = tuple[float, float | None]
 """Crank angle and, of what belongs to a cylinder, cycle angle of a peak [rad]."""
 
@@ -80,16 +82,17 @@ def signless(name: str) -> str:
 
 def values_of(measures: Measures) -> dict[str, tuple[Estimate, ...]]:
     """The measures that a run has, by the names of `names_of` and in their order; of each cylinder,
-    journal or pin where they are many.
+    journal or pin where they are many. Where the crank turns back it has none that are means over
+    the angle turned.
 
     >>> values_of(simulate(load_scene("propeller")).measures())["crank_pin_peak"][0].value > 2e4
     True
     """
     values: dict[str, tuple[Estimate, ...]] = {}
-    names = names_of(measures.scene)
+    names, none = names_of(measures.scene), _OVER_ANGLE if measures.turns_back else ()
     for name in names:
         value = getattr(measures, name, None)
-        if value is not None:
+        if value is not None and name not in none:
             values[name] = value if names[name].of else (value,)
     for force in measures.joints:
         key = force.joint.replace(" ", "_")

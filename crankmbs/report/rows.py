@@ -153,17 +153,12 @@ def not_periodic(measures: Measures) -> str:
 
 
 def meaningless(measures: Measures) -> set[str]:
-    """Names of measures that mean nothing over a window, where the speed is not periodic or the
-    crank turns back.
+    """Names of measures that mean nothing over a window, where the speed is not periodic.
 
     >>> meaningless(simulate(load_scene("propeller")).measures())
     set()
     """
-    if measures.steady:
-        return set()
-    over_angle = {"mean_speed", "piston_speed", "crank_torque", "external_torque"}
-    unsteady = {"fluctuation", "mechanical_efficiency"}
-    return unsteady | over_angle if measures.turns_back else unsteady
+    return set() if measures.steady else {"fluctuation", "mechanical_efficiency"}
 
 
 def measure_rows(measures: Measures) -> list[list[str]]:
