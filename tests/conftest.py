@@ -13,12 +13,12 @@ from crankmbs.errors import SceneError
 from crankmbs.scene.read import parse_scene
 
 
-def pytest_collection(session):
+def pytest_collection():
     """What is collected stays to the end: looking for what of it can go takes seconds."""
     gc.disable()
 
 
-def pytest_collection_finish(session):
+def pytest_collection_finish():
     gc.freeze()
     gc.enable()
 
