@@ -106,6 +106,10 @@ def _slowing(result: Result) -> str:
         return ""
     time, angle, turns_back = stop
     then = "turns back" if turns_back else "comes to rest"
+    turned = angle - float(result.sampled("crank_angle")[0])
+    if abs(turned) < scene.settled_period:
+        energy = float(result.sampled("kinetic_energy")[0])
+        return Ending.TOO_LIGHT.said(angle, time=time, then=then, energy=energy)[1]
     return Ending.SLOWS_DOWN.said(angle, time=time, then=then)[1]
 
 

@@ -7,7 +7,17 @@ from math import pi
 import numpy as np
 import pytest
 
-from crankmbs import CylinderTable, Motion, Run, SpeedFile, Table, load_scene, simulate
+from crankmbs import (
+    AngleTable,
+    CylinderTable,
+    ForceAngleTable,
+    Motion,
+    Run,
+    SpeedFile,
+    Table,
+    load_scene,
+    simulate,
+)
 from crankmbs.cli.report import report
 from crankmbs.measures.plausible import warnings
 
@@ -101,6 +111,42 @@ def test_each_key_and_each_file_is_looked_at_once():
         assert said.startswith("gas.pressure: ")
     (said,) = gaps(replace(FOUR, gas=replace(FOUR.gas, motored=cut)))
     assert said.startswith("gas.motored: table has no row between 599 and 720 degrees")
+
+
+LOADED = {
+    "cut": ([*range(0, 361, 15)], 720.0, "torque[1]: press.csv", "between 360 and 720"),
+    "a hole": (
+        [*range(0, 91, 10), *range(270, 361, 10)],
+        None,
+        "torque[1]: press.csv",
+        "90 and 270",
+    ),
+    "whole": ([*range(0, 361, 15)], None, None, None),
+    "typed by hand": ([0, 90, 180, 200, 300], None, None, None),
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "key"),
+    [
+        (name, key)
+        for name in LOADED
+        for key in ("torque", "force")
+        if (name, key) != ("cut", "force")
+    ],
+)
+def test_a_load_over_the_angle_is_looked_at_too(name, key):
+    degrees, period, where, between = LOADED[name]
+    table = Table([k * DEGREE for k in degrees], [-20.0 - k / 9.0 for k in degrees], "press.csv")
+    of = {"file": table} if period is None else {"file": table, "period": period * DEGREE}
+    load = {"torque": AngleTable, "force": ForceAngleTable}[key](**of)
+    said = gaps(replace(FOUR, **{key: (load,)}))
+    assert len(said) == (where is not None)
+    for sentence in said:
+        assert sentence.startswith(where.replace("torque", key))
+        assert between in sentence
+        assert sentence.endswith(f"where the {key} is meant so, one or two between")
+        assert (" N m;" in sentence) == (key == "torque")
 
 
 def turning(rows, *, noise, kind="time_table", waves=4.0):

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from math import pi
 
 import numpy as np
 import pytest
@@ -86,7 +87,7 @@ def test_a_periodic_run_has_peaks_of_its_last_cycle():
     result = simulate(load_scene("propeller"))
     found = result.measures()
     names = [table.headings[0] for table in tables(result, found)]
-    assert names == ["over the last cycle", "over the last cycle"]
+    assert names == ["over the last cycle", "over the last cycle", "over cycles 1 to 19"]
     assert unsteady(result, found) == ""
     rows = {name: float(value) for name, value, _ in measure_rows(found)}
     # power is torque times speed, and the piston passes the stroke twice a revolution
@@ -168,8 +169,9 @@ def test_a_run_that_turns_back_has_no_cycle():
     result = simulate(load_scene("run_down"))
     found = result.measures()
     assert found.imep is None
-    (run,) = tables(result, found)
+    run, cycles = tables(result, found)
     assert run.headings[0] == "over the whole run, 0 to 1.48631 s"
+    assert cycles.headings[0] == "over cycles 1 to 6"
     assert "turns back" in unsteady(result, found)
 
 
@@ -211,3 +213,36 @@ def test_of_cycles_that_differ_it_is_said_in_which_a_peak_is():
     assert dict(zip(table.headings, pressure, strict=True))["cycle"] == "5"
     _, table = measure_tables(simulate(load_scene("propeller")).measures())
     assert "cycle" not in table.headings
+
+
+def test_of_cycles_that_differ_the_least_and_the_largest_are_said():
+    """A misfire in cylinder 3: its pressures and the speeds differ, the pressures elsewhere do
+    not."""
+    result = simulate(load_scene("misfire"))
+    last = tables(result, result.measures())[-1]
+    assert last.headings == [
+        "over cycles 1 to 10",
+        *("least", "in cycle", "largest", "in cycle", "num. error"),
+    ]
+    cycles, rows = result.cycles, {name: cells for name, *cells in last.rows}
+    names = {
+        "mean speed [rpm]": (cycles.mean_speed, cycles.mean_speed, pi / 30.0),
+        "indicated mean effective pressure, cylinder 3 [bar]": (
+            *2 * (cycles.imep.sel(cylinder=3),),
+            1e5,
+        ),
+        "crank speed [rpm]": (cycles.least_speed, cycles.largest_speed, pi / 30.0),
+    }
+    assert list(rows) == list(names)
+    for name, (least, largest, scale) in names.items():
+        low, in_low, high, in_high, _ = rows[name]
+        assert float(low) == pytest.approx(float(least.min()) / scale, rel=1e-5)
+        assert float(high) == pytest.approx(float(largest.max()) / scale, rel=1e-5)
+        assert float(least.sel(cycle=int(in_low))) == least.min()
+        assert float(largest.sel(cycle=int(in_high))) == largest.max()
+
+
+@pytest.mark.parametrize("name", ["yi_diesel_free", "coasting", "torque_driven"])
+def test_alike_or_few_cycles_are_not_told_apart(name):
+    result = simulate(load_scene(name))
+    assert not tables(result, result.measures())[-1].headings[0].startswith("over cycles")

@@ -231,3 +231,18 @@ def test_of_a_motor_too_weak_it_is_said_when_the_crank_stops(inertia: float) -> 
     times = speed.time.values[stop - 1 : stop + 1]
     assert times[0] <= float(said[1]) <= times[1]
     assert math.degrees(speed.crank_angle.values[stop - 1]) <= float(said[2]) + 0.01
+
+
+def test_a_crank_without_a_flywheel_stops_in_its_first_cycle_and_that_is_the_reason() -> None:
+    """The load is the same with which the shipped engine settles at 3,190 rpm."""
+    scene = load_scene("propeller").with_(crank__inertia=0.0, run__until="settled")
+    found = simulate(scene)
+    said = re.search(
+        r"before its first cycle is over it stops at (\S+) s, at (\S+) degrees, where it turns "
+        r"back, as its kinetic energy of (\S+) J at the start .* larger crank\.inertia",
+        found.message,
+    )
+    assert said, found.message
+    run = simulate(scene.with_(run__until="1 cycle", run__every="1 deg"), formulation="minimal")
+    assert run.data.crank_speed.values.min() < 0.0
+    assert float(run.data.kinetic_energy[0]) == pytest.approx(float(said[3]), rel=1e-3)

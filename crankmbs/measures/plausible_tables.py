@@ -5,8 +5,9 @@ Each rule is one function of the scene that gives its sentences, as in `plausibl
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from crankmbs.scene.cycles import SAME_ANGLE, cycles_in
 from crankmbs.scene.drives import SpeedFile
 from crankmbs.scene.gas import tables_of
 from crankmbs.scene.scene import Scene
+from crankmbs.scene.table_loads import OverAngle
 from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.scene.units import BAR, DEGREE
 
@@ -34,43 +36,70 @@ _OF_SLOPE = 0.3
 _OF_SPEED_SQUARED = 1e-3
 
 
+class _Rows(NamedTuple):
+    """Rows that come again after a period: name : what the scene calls them; angle [rad], shape
+    (n,); values in a unit, shape (columns, n); cycles : how many of the period they span [rad]."""
+
+    name: str
+    source: str
+    interpolation: str
+    angle: Array
+    values: Array
+    unit: str
+    period: float
+    cycles: int = 1
+
+
 def gaps(scene: Scene) -> Iterator[str]:
     """A gap far wider than all others, between rows or from the last one to the first.
 
-    Between two rows of one pressure it is meant to stay, and a step holds what it has.
+    Between two rows of one value it is meant to stay, and a step holds what it has.
 
     >>> list(gaps(load_scene("propeller")))
     []
     """
+    for rows in (*_pressures(scene), *_over_angle(scene)):
+        found = None if rows.interpolation == "step" else _gap(rows)
+        if found is None:
+            continue
+        begin, end, usual, (before, after) = found
+        what = rows.name.partition("[")[0].removeprefix("gas.")
+        yield (
+            f"{rows.name}: {Path(rows.source).name} has no row between {begin / DEGREE:.6g} and "
+            f"{end / DEGREE:.6g} degrees, and elsewhere one every {usual / DEGREE:.3g} degrees "
+            f"or less: {rows.interpolation} draws {(end - begin) / DEGREE:.6g} degrees there, "
+            f"from {before:.4g} to {after:.4g} {rows.unit}; add the rows that are missing, "
+            f"or, where the {what} is meant so, one or two between"
+        )
+
+
+def _pressures(scene: Scene) -> Iterator[_Rows]:
+    """Of the gas."""
     gas = scene.gas
-    if gas is None or gas.interpolation == "step":
-        return
-    for key in ("pressure", "motored", "crank_end"):
+    for key in ("pressure", "motored", "crank_end") if gas else ():
         source = getattr(gas, key)
-        several = source if isinstance(source, tuple) else (source,)
-        for each in dict.fromkeys(several):
-            if not isinstance(each, Table | CylinderTable):
-                continue
-            found = _gap(each, gas.period)
-            if found is None:
-                continue
-            begin, end, usual, (before, after) = found
-            yield (
-                f"gas.{key}: {Path(each.source).name} has no row between {begin / DEGREE:.6g} and "
-                f"{end / DEGREE:.6g} degrees, and elsewhere one every {usual / DEGREE:.3g} degrees "
-                f"or less: {gas.interpolation} draws {(end - begin) / DEGREE:.6g} degrees there, "
-                f"from {before / BAR:.4g} to {after / BAR:.4g} bar; add the rows that are missing, "
-                "or, where the pressure is meant so, one or two between"
-            )
+        for each in dict.fromkeys(source if isinstance(source, tuple) else (source,)):
+            if gas and isinstance(each, Table | CylinderTable):
+                tables = tables_of(each)
+                bars = np.array([table.y for table in tables]) / BAR
+                about = np.array(each.x), bars, "bar", gas.period, cycles_in(tables[0], gas.period)
+                yield _Rows(f"gas.{key}", each.source, gas.interpolation, *about)
 
 
-def _gap(
-    source: Table | CylinderTable, period: float
-) -> tuple[float, float, float, tuple[float, float]] | None:
-    """Where a gap begins and ends, the widest of the others [rad], and the pressures around it."""
-    count = cycles_in(tables_of(source)[0], period)
-    first = source.x[0]
-    angle = np.append(source.x, first + count * period)
+def _over_angle(scene: Scene) -> Iterator[_Rows]:
+    """Of torques and forces over the crank angle."""
+    for name, loads, unit in (("torque", scene.torque, "N m"), ("force", scene.force, "N")):
+        for number, load in enumerate(loads, start=1):
+            if isinstance(load, OverAngle):
+                angle, values = np.array(load.file.x), np.array([load.file.y])
+                about = load.file.source, load.interpolation, angle, values, unit
+                yield _Rows(f"{name}[{number}]", *about, load.cycle.period)
+
+
+def _gap(rows: _Rows) -> tuple[float, float, float, tuple[float, float]] | None:
+    """Where a gap begins and ends, the widest of the others [rad], and the values around it."""
+    count, columns = rows.cycles, rows.values
+    angle = np.append(rows.angle, rows.angle[0] + count * rows.period)
     width = np.diff(angle)
     if len(width) <= count:
         return None
@@ -78,16 +107,10 @@ def _gap(
     k = int(np.argmax(width))
     if widest < max(_WIDE, _TIMES_THE_OTHERS * usual) - SAME_ANGLE:
         return None
-    columns = _columns(source)
-    before, after = columns[:, k], columns[:, (k + 1) % len(source.x)]
-    if k + 1 < len(source.x) and np.array_equal(before, after):
+    before, after = columns[:, k], columns[:, (k + 1) % len(rows.angle)]
+    if k + 1 < len(rows.angle) and np.array_equal(before, after):
         return None
     return float(angle[k]), float(angle[k + 1]), float(usual), (float(before[0]), float(after[0]))
-
-
-def _columns(source: Table | CylinderTable) -> Array:
-    columns: Sequence[Sequence[float]] = [table.y for table in tables_of(source)]
-    return np.array(columns)
 
 
 def scatter(scene: Scene) -> Iterator[str]:

@@ -52,6 +52,12 @@ class Ending(Enum):
         "{time:.6g} s, at {angle:.6g} degrees, where it {then}; give a smaller load, or one that "
         "grows with the speed",
     )
+    TOO_LIGHT = (
+        1,
+        "does not settle: before its first cycle is over it stops at {time:.6g} s, at {angle:.6g} "
+        "degrees, where it {then}, as its kinetic energy of {energy:.4g} J at the start carries it "
+        "no farther; give a larger crank.inertia, a higher speed at the start, or a smaller load",
+    )
     RUNS_AWAY = (
         1,
         "does not settle: what the crank gets in a period is more than what its loads take at any "

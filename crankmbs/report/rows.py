@@ -55,6 +55,9 @@ _WHOLE_RUN = [
 _MPA = 1e6  # Pa in N/mm^2
 _NO_TIME = 1e-6  # of the latest peak: the begin of the run
 _SAME = 1e-9  # of a piston speed: no more than rounding
+_IMEP = "imep", "imep_crank_end"
+_FEWEST_CYCLES = 4  # two or three stand in cycles.csv
+_CLEARLY = 0.01  # of the largest mean speed or pressure
 
 
 class Table(NamedTuple):
@@ -72,11 +75,40 @@ def tables(result: Result, measures: Measures) -> list[Table]:
     ['over the last cycle', 'over the whole run, 0 to 1 s']
     """
     if measures.steady:
-        return measure_tables(measures)
+        return [*measure_tables(measures), *_over_cycles(result)]
     parts = measure_tables(measures)[:1] if measures.window.kind != TURNS_BACK else []
     motion = result.passes.answer
     name = f"over {_part(result)}, {motion.begin:.6g} to {motion.end:.6g} s"
-    return [*parts, Table([name, *_WHOLE_RUN], _of_run(run_peaks(result), result.scene))]
+    peaks = Table([name, *_WHOLE_RUN], _of_run(run_peaks(result), result.scene))
+    return [*parts, peaks, *_over_cycles(result)]
+
+
+def _over_cycles(result: Result) -> list[Table]:
+    """What differs clearly from cycle to cycle: the least and the largest, and in which they are;
+    beside them the extremes of the speed."""
+    if result.keep is None or result.cycle_table.length < _FEWEST_CYCLES:
+        return []
+    cycles, names = result.cycle_table, names_of(result.scene)
+    number, rows = cycles.values("cycle"), []
+    for words, units, least, largest in (
+        ("mean speed", "rad/s", "mean_speed", "mean_speed"),
+        *((names[name].words, "Pa", name, name) for name in _IMEP if name in cycles.variables),
+        ("crank speed", "rad/s", "least_speed", "largest_speed"),
+    ):
+        error = float(cycles.variables[largest][2]["error_estimate"])
+        low, high = (cycles.values(name).reshape(len(number), -1).T for name in (least, largest))
+        for k, pair in enumerate(zip(low, high, strict=True), start=1):
+            ends = int(pair[0].argmin()), int(pair[1].argmax())
+            bounds = [float(one[end]) for one, end in zip(pair, ends, strict=True)]
+            if least == largest and bounds[1] - bounds[0] <= _CLEARLY * max(map(abs, bounds)):
+                continue
+            name = labelled(f"{words}, cylinder {k}" if len(low) > 1 else words, None, 1, units)
+            ((lowest, apart), (highest, _)) = (_cells(units, Estimate(x, error)) for x in bounds)
+            places = [str(number[end]) for end in ends]
+            rows.append([name, lowest, places[0], highest, places[1], apart])
+    name = f"over cycles {number[0]} to {number[-1]}"
+    headings = [name, "least", "in cycle", "largest", "in cycle", _ERROR]
+    return [Table(headings, rows)] if len(rows) > 1 else []
 
 
 def measure_tables(measures: Measures) -> list[Table]:
