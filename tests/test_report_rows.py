@@ -246,3 +246,17 @@ def test_of_cycles_that_differ_the_least_and_the_largest_are_said():
 def test_alike_or_few_cycles_are_not_told_apart(name):
     result = simulate(load_scene(name))
     assert not tables(result, result.measures())[-1].headings[0].startswith("over cycles")
+
+
+@pytest.mark.parametrize("offset", [0.04, -0.04, 0.0])
+def test_an_offset_slide_has_its_quick_return_ratio(offset):
+    """(180 + phi) / (180 - phi), phi between the lines of crank and rod at both dead centres."""
+    scene = load_scene("coasting").with_(
+        crank__radius=0.05, rod__length=0.15, rod__center_of_mass=0.0, piston__offset=offset
+    )
+    said = dict(machine_rows(scene))["dead centres"]
+    phi = math.degrees(math.asin(abs(offset) / 0.1) - math.asin(abs(offset) / 0.2))
+    ratio = (180.0 + phi) / (180.0 - phi)
+    assert (f"quick-return ratio {ratio:.6g}: " in said) == bool(offset)
+    out = 180.0 + math.copysign(phi, offset)
+    assert (f"{out:.6g} deg from the first to the second" in said) == bool(offset)

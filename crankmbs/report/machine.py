@@ -127,11 +127,15 @@ def _piston(gear: RunningGear) -> str:
 
 
 def _dead_centres(gear: RunningGear, *, several: bool) -> str:
-    at = " and ".join(f"{angle:.6g}" for angle in np.degrees(dead_centres(*gear.shape)))
-    text = f"cycle angles {at} deg, stroke {gear.stroke * 1e3:.6g} mm"
+    top, bottom = np.degrees(dead_centres(*gear.shape))
+    text = f"cycle angles {top:.6g} and {bottom:.6g} deg, stroke {gear.stroke * 1e3:.6g} mm"
     area = gear.piston.gas_area
     if area is not None:
         text += f", displaces {gear.stroke * area * 1e6:.6g} cm^3{' each' * several}"
+    elif gear.piston.offset:
+        out = (bottom - top) % 360.0
+        ratio = max(out, 360.0 - out) / min(out, 360.0 - out)
+        text += f", quick-return ratio {ratio:.6g}: {out:.6g} deg from the first to the second"
     return text
 
 
