@@ -288,6 +288,18 @@ def test_a_load_that_is_undefined_from_a_time_on_ends_the_run(formulation):
     assert float(result.data["time"][-1]) == pytest.approx(0.1, rel=1e-12)
 
 
+@pytest.mark.parametrize("formulation", FREE)
+def test_a_load_that_is_undefined_below_a_speed_is_not_crept_up_to(formulation):
+    """Step after step as short as rounding, a million evaluations led nowhere."""
+    load = Load(lambda t, theta, omega: -20.0 if omega > 330.0 else math.nan)
+    scene = load_scene("yi_diesel_free").with_(torque=(load,), run__until="1 cycle")
+    result = simulate(scene, formulation=formulation)
+    assert result.status == -1
+    assert "gives nan at t = 0.00339922 s" in result.message
+    assert float(result.data["crank_speed"][-1]) == pytest.approx(330.0, rel=1e-12)
+    assert result.cost.evaluations < 30_000
+
+
 @pytest.mark.slow
 def test_a_saved_result_keeps_the_name(tmp_path):
     result = simulate(wheel(Load(fails_late, kink_times=(1.0,), until=0.01), until="10 deg"))

@@ -34,6 +34,7 @@ _MOST_STEPS = 4096  # of one segment
 _FINEST, _RADAU = 2.3e-14, 1e-13  # tolerances of a step relative to a value, SciPy's; of Radau
 _BEYOND = 1.02  # of the way to a knot: a step that goes there, so that it is passed
 _FIRST = 1e-3  # of the step that could be: the first one behind a knot, where it hesitates
+_LOST = 1e-14  # of the time: no shorter step leads to where a function of Python has a value
 _LEAVES = 1e-12  # of a step: a motion that leaves a limit before has not set out
 
 
@@ -200,7 +201,10 @@ class _Walk:
         """A step no longer than this [s]; None where none is short enough."""
         equation, control, middle = self._equation, self._control, self._equation.piece.middle
         time, y = self._time, self._y - [middle, 0.0, 0.0]
-        begin = State(time, float(self._y[0]), float(self._y[1]), 0.0)
+        theta, omega, _ = self._y.tolist()
+        begin, functions = State(time, theta, omega, 0.0), equation.branch.functions
+        for function in functions:
+            function.failure = ""
         stiff = equation.is_stiff(begin, control.tolerance * control.speed)
         method: Any = Radau if stiff else DOP853
         tolerance = max(control.tolerance, _RADAU if stiff else _FINEST)
@@ -217,7 +221,8 @@ class _Walk:
         )
         failed = solver.step()
         self._evaluations += solver.nfev
-        if failed or (solver.t < width and time + solver.t == time):  # to where a load has a value
+        lost = any(function.failure for function in functions) and solver.t < _LOST * time
+        if failed or lost or (solver.t < width and time + solver.t == time):
             return None
         row = interpolant(solver)
         row[0] = self._y
