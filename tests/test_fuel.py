@@ -216,14 +216,20 @@ def test_the_diagram_without_combustion_is_its_compression_both_ways(scene):
     np.testing.assert_allclose(both, fired(angle), rtol=1e-9, atol=1e-3)
 
 
-def test_a_polytrope_continues_the_file():
+@pytest.mark.parametrize("e", [0.0012972, 0.012, -0.012])
+def test_a_polytrope_continues_the_file(e):
+    """From 20 degrees before the true top dead centre to the true bottom dead centre."""
     polytrope = Polytrope(polytrope=1.32, closes=-20 * pi / 180, compression_ratio=18.0)
-    scene = replace(FOUR, gas=replace(FOUR.gas, motored=polytrope))
+    scene = FOUR.with_(piston__offset=e)
+    scene = replace(scene, gas=replace(FOUR.gas, motored=polytrope))
     fired, motored = pressures_of(scene)[0], motored_of(scene)[0]
-    outside = np.concatenate([np.linspace(0.0, 5.9, 200), np.linspace(9.5, 12.5, 100)])
+    ambient, r, l = FOUR.gas.ambient, 0.046, FOUR.rod.length
+    begin = 2.0 * pi + np.arcsin(e / (l + r)) - 20 * pi / 180
+    end = 3.0 * pi + np.arcsin(e / (l - r))
+    outside = [np.linspace(0.0, begin - 0.01, 200), np.linspace(end + 0.01, 12.5, 100)]
+    outside = np.concatenate(outside)
     np.testing.assert_allclose(motored(outside), fired(outside), rtol=1e-9, atol=1e-3)
-    ambient, (r, l, e) = FOUR.gas.ambient, (0.046, FOUR.rod.length, FOUR.piston.offset)
-    inside = np.linspace(2.0 * pi - 20 * pi / 180, 3.0 * pi - 1e-6, 100)
+    inside = np.linspace(begin, end - 1e-6, 100)
     stroke = np.sqrt((l + r) ** 2 - e**2) - np.sqrt((l - r) ** 2 - e**2)
     x = r * np.cos(inside) + np.sqrt(l**2 - (r * np.sin(inside) - e) ** 2)
     size = 1.0 + 17.0 * (np.sqrt((l + r) ** 2 - e**2) - x) / stroke

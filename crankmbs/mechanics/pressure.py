@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import PPoly
 
 from crankmbs.mechanics.cycle_rows import rows_of, rows_of_table
+from crankmbs.mechanics.geometry import dead_centres
 from crankmbs.mechanics.indicator import INDICATOR_RTOL, fit, indicator_pieces, relative_volume
 from crankmbs.mechanics.knots import KNOT, apart, repeat
 from crankmbs.numerics.arrays import Array, Index
@@ -244,10 +245,11 @@ def _of_source(scene: Scene, gas: Gas, source: AnyPressure) -> tuple[PeriodicPre
 def _continued(
     gas: Gas, polytrope: Polytrope, fired: PeriodicPressure, shape: tuple[float, float, float]
 ) -> PeriodicPressure:
-    """A fired pressure of a cylinder of this shape, from ``closes`` to the bottom dead centre a
-    polytrope in its place, in every cycle."""
+    """A fired pressure of a cylinder of this shape, from ``closes`` to the true bottom dead centre
+    a polytrope in its place, in every cycle."""
     ambient, ratio = gas.ambient or 0.0, polytrope.compression_ratio
-    begin, end = 2.0 * math.pi + polytrope.closes, 3.0 * math.pi
+    top, bottom = (2.0 * math.pi + angle for angle in dead_centres(*shape))
+    begin, end = top + polytrope.closes, bottom
     whole = np.arange(begin, begin + fired.period - 1e-6, gas.period)
     knots, columns = [], []
     for at in whole:

@@ -130,9 +130,9 @@ def _table(value: Any, info: ValidationInfo) -> Any:
 class Polytrope:
     """The pressure without combustion from a polytrope p V^n, continued from the pressure file.
 
-    polytrope: its exponent n [1]; closes [rad]: where it takes over, from the firing dead centre,
-    so that what comes before holds no combustion; compression_ratio [1]. It ends at the bottom
-    dead centre behind, where the file goes on.
+    polytrope: its exponent n [1]; closes [rad]: where it takes over, from the true firing dead
+    centre, so that what comes before holds no combustion; compression_ratio [1]. It ends at the
+    true bottom dead centre behind, where the file goes on.
     """
 
     polytrope: Annotated[Float, Gt(0), Le(10)]

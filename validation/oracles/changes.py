@@ -142,18 +142,20 @@ def curve_of(table: PressureTable | PressurePieces) -> Curve:
 def continued(
     machine: Machine, fired: Curve, cycle: float, polytrope: tuple[float, float, float, float]
 ) -> Curve:
-    """A fired pressure, from an angle on to the bottom dead centre a polytrope in its place, in
-    every cycle.
+    """A fired pressure, from an angle on to the true bottom dead centre a polytrope in its place,
+    in every cycle.
 
-    polytrope : exponent; the angle, before the firing dead centre negative [rad]; compression
+    polytrope : exponent; the angle, before the true firing dead centre negative [rad]; compression
     ratio; the crankcase's pressure [Pa], which the fired one is counted from
     """
     exponent, closes, ratio, ambient = polytrope
+    r, l, e = (float(x) for x in (machine.crank_radius, machine.rod_length, machine.offset))
     knots: list[float] = []
     pieces: list[Smooth] = []
-    first = 2.0 * math.pi + closes
+    first = 2.0 * math.pi + math.asin(e / (l + r)) + closes
+    last = 3.0 * math.pi + math.asin(e / (l - r))  # crank and rod in one line
     for turn in range(round(fired.period / cycle)):
-        begin, end = first + turn * cycle, 3.0 * math.pi + turn * cycle
+        begin, end = first + turn * cycle, last + turn * cycle
         piece, low, _ = fired.at(begin + 1e-12)
         pressed = piece(begin - low) + ambient
         size = _volume(machine, begin, ratio)

@@ -197,12 +197,13 @@ function follows([a, b, c, d], left, width, pressure, closeness) {
   });
 }
 
-/** A fired pressure, from where it closes to the bottom dead centre a polytrope in its place, in
- * every cycle. */
+/** A fired pressure, from where it closes to the true bottom dead centre a polytrope in its place,
+ * in every cycle. */
 function continued(gas, source, shape, fired) {
   const volume = relativeVolume(source.compression_ratio, shape);
-  const first = TURN + source.closes;
-  const length = Math.PI - source.closes;
+  const { top, bottom } = deadCentres(shape);
+  const first = TURN + top + source.closes;
+  const length = bottom - top - source.closes;
   const period = fired.knots[fired.knots.length - 1] - fired.knots[0];
   const knots = [];
   const parts = [];
