@@ -78,9 +78,6 @@ SPARED = {
     "a starter at rest": replace(
         FOUR, start=Start(angle=0.0, speed=0.0), torque=(Constant(torque=90),)
     ),
-    "a brake on an engine that turns backwards": replace(
-        FOUR, start=Start(angle=0.0, speed=-335.0), torque=(Quadratic(coefficient=1e-4),)
-    ),
     "a gauge pressure of 0": regassed(
         V_TWIN, pressure=0.0, indicator=None, absolute=False, ambient=None
     ),
