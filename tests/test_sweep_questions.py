@@ -2,6 +2,7 @@
 
 import re
 import shlex
+import sys
 
 import pytest
 from command_line import crankmbs_, names, refused
@@ -85,6 +86,30 @@ def test_a_least_value_fulfils_its_conditions():
     assert free.message == "found, at a bound of crank.inertia: beyond it there may be less"
     assert found.message == "found"
     assert free.reached.value < found.reached.value
+
+
+@pytest.mark.parametrize("most", [1.0, 0.5])
+def test_along_a_kink_it_goes_on_to_the_least(monkeypatch, most):
+    """100 |x - y^2| + (y - 0.9)^2, whose valley is a kink along a curve; also where y has a bound.
+    A descent by quadratic models stops at once where it comes upon it."""
+
+    class Valley:
+        def __init__(self, scene, names):
+            self.names = names
+
+        def at(self, values, readings):
+            x, y = values
+            both = 100.0 * abs(x - y * y) + (y - 0.9) ** 2, y
+            return tuple(Estimate(value, 0.0) for value in both[: len(readings)])
+
+    monkeypatch.setattr(sys.modules["crankmbs.sweep.minimize"], "Asked", Valley)
+    vary = {"piston.offset": "0..1 m", "crank.inertia": "0..1 kg m^2"}
+    wanted = ["fluctuation <= 0.5"] * (most < 1.0)
+    found = minimize(SCENE, vary, "peak side force", wanted)
+    y = min(0.9, most)
+    assert found.reached.value == pytest.approx((y - 0.9) ** 2, abs=1e-3)
+    assert found.values["crank.inertia"] == pytest.approx(y, abs=0.03)
+    assert found.values["piston.offset"] == pytest.approx(y * y, abs=0.05)
 
 
 def test_conditions_that_nothing_fulfils_are_said():

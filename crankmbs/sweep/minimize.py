@@ -25,6 +25,7 @@ __all__ = ["Condition", "Minimum", "minimize"]
 
 _POINTS = 16  # of the scan for each knob
 _MOST = 60  # evaluations of the polish for each knob
+_AGAIN, _CLEARLY = 4, 1e-5  # simplexes at most; of the measure: one that gained less is the last
 _FIRST, _LAST = 0.05, 1e-6  # steps of the polish, shares of a range
 _AT = 1e-5  # of a range: so near its end a knob has ended there
 _SLACK = 1e-6  # of a bound: so far a condition may be missed
@@ -69,8 +70,9 @@ def minimize(
     """Find the values of some knobs with which a measure is least.
 
     16 points a knob of a Sobol sequence are looked at, and the best of them that fulfils the
-    conditions is polished by COBYQA, which takes steps of quadratic models without derivatives:
-    peaks are not smooth. The answer is the least value near there.
+    conditions is polished, without derivatives as peaks are not smooth: by COBYQA, whose steps are
+    those of quadratic models, and then by the simplex of Nelder and Mead, which goes on where two
+    peaks are alike. The answer is the least value near there.
 
     Parameters
     ----------
@@ -143,7 +145,34 @@ class _Descent:
         best = self._best(np.clip(ended.x, 0.0, 1.0))
         if self._excess(best).max(initial=0.0) > _SLACK:
             return self._answer(best, 1, "nothing in the ranges fulfils the conditions")
+        for _ in range(_AGAIN):
+            before, best = best, self._down_kinks(best)
+            if self._least(before) - self._least(best) <= _CLEARLY * scale:
+                break
         return self._answer(best, 0, f"found{self._at_bounds(best)}")
+
+    def _down_kinks(self, start: Array) -> Array:
+        """The best point known after Nelder and Mead's simplex went on from one, within the
+        conditions: a peak that is now one, now another has a valley whose floor is a kink, in which
+        a quadratic model stops."""
+        inward = np.where(start < 0.5, _FIRST, -_FIRST)
+
+        def walled(share: Array) -> float:
+            return math.inf if self._excess(share).max(initial=0.0) > _SLACK else self._least(share)
+
+        polished(
+            walled,
+            start,
+            method="Nelder-Mead",
+            bounds=Bounds(np.zeros_like(start), np.ones_like(start)),
+            options={
+                "initial_simplex": np.vstack([start, start + np.diag(inward)]),
+                "maxfev": _MOST * len(start),
+                "xatol": _LAST,
+                "fatol": math.inf,
+            },
+        )
+        return self._best(start)
 
     def _at_bounds(self, share: Array) -> str:
         """The knobs that ended at a bound of their range, in words."""
