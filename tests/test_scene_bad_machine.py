@@ -174,7 +174,8 @@ KEYS = (
         (
             '"150 mm"',
             '"150 mm"\nmass = 1\ncenter_of_mass = "-1 cm"\ninertia = "two-mass"',
-            'rod: the inertia "two-mass" needs a center_of_mass between the pins, 0 to 0.15 m; '
+            'rod: two masses at its pins, by inertia = "two-mass" and in the lectures, need a '
+            "center_of_mass between the pins, 0 to 0.15 m; "
             "-0.01 m came",
         ),
         # the cylinders

@@ -109,8 +109,9 @@ def _check_gear(gear: RunningGear, *, gas: bool) -> None:
         raise InputError(OPEN_LOOP.format(least=least, came=rod.length) + in_metres)
     if rod.moment_of_inertia < 0.0:  # after its length, which may be what is wrong
         raise InputError(
-            'rod: the inertia "two-mass" needs a center_of_mass between the pins, 0 to '
-            f"{rod.length:.6g} m; {rod.center_of_mass:.6g} m came"
+            'rod: two masses at its pins, by inertia = "two-mass" and in the lectures, need a '
+            f"center_of_mass between the pins, 0 to {rod.length:.6g} m; {rod.center_of_mass:.6g} m "
+            "came"
         )
     if gas and piston.gas_area is None:
         raise InputError(
