@@ -239,10 +239,48 @@ def test_in_an_even_star_every_cylinder_has_its_bank_and_its_turn(speed, drive, 
 def test_with_another_shape_in_every_case_each_is_as_alone():
     knobs = ["rod.length", "piston.mass"]
     shapes = [scene_of(SHIPPED[0], knobs, given) for given in ((0.16, 0.5), (0.19, 0.8))]
-    found = rows_of(shapes)
-    assert [rows.which.tolist() for rows in found] == [[0], [1]]
-    for rows, scene in zip(found, shapes, strict=True):
-        assert_agree(rows, 0, by_hand(scene)[0])
+    (rows,) = rows_of(shapes)
+    assert rows.which.tolist() == [0, 1]
+    for number, scene in enumerate(shapes):
+        assert_agree(rows, number, by_hand(scene)[0])
+
+
+FAMILIES = {
+    "one cylinder": SHIPPED[0],
+    "shares": SHIPPED[1],
+    "banks": SHIPPED[2],
+    "journals, weight": WITH_JOURNALS[2],
+    "bearings, friction": WITH_JOURNALS[0],
+    "backwards": replace(
+        settling("propeller", start__angle="217 deg", start__speed=-300.0),
+        torque=(Constant(torque=-40.0), Quadratic(coefficient=4e-4)),
+        friction=Friction(ring_force=40.0, ring_pressure=0.05),
+    ),
+    "in time": load_scene("propeller").with_(run__until="0.31 s", run__every="none"),
+    "to an angle": load_scene("propeller").with_(run__until="2000 deg", run__every="none"),
+}
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_machines_of_other_lengths_and_masses_are_as_alone(name):
+    """One of them stalls, which leaves the tables of the others to these."""
+    scene, random = FAMILIES[name], np.random.default_rng(7)
+    knobs = "crank.radius", "rod.length", "piston.mass", "rod.mass"
+    own = scene.crank.radius, scene.rod.length, scene.piston.mass, scene.rod.mass
+    factors = random.uniform(0.97, 1.03, (4, 4))
+    several = [scene_of(scene, knobs, (own * each).tolist()) for each in factors]
+    several[1] = replace(
+        several[1], torque=(*scene.torque, Constant(torque=-np.sign(scene.start.speed) * 2000.0))
+    )
+    found = rows_of(several)
+    assert sorted(number for rows in found for number in rows.which.tolist()) == [0, 2, 3]
+    assert any(len(rows.which) > 1 for rows in found)
+    for rows in found:
+        for place, number in enumerate(rows.which):
+            (alone,) = rows_of([several[number]])
+            assert_agree(rows, place, {column: each[0] for column, each in alone.columns.items()})
+    first = next(rows for rows in found if 0 in rows.which)
+    assert_agree(first, first.which.tolist().index(0), by_hand(several[0])[0])
 
 
 def test_beside_a_case_without_a_motion_it_is_as_alone():

@@ -110,7 +110,7 @@ def _motion_alone(scene: Scene) -> None:
 
 def _in_c(tables: Pass, given: Array) -> tuple[Callable[[], object], Array]:
     """A call of settled.c for cases (inertia, c0, c2), and its answer: energies [J]."""
-    (m, s), rule = tables.inertia.shape, tables.rule
+    (_, m, s), rule = tables.inertia.shape, tables.rule
     answer = np.empty(len(given))
     room = np.empty(2 * m * (s + 1) * limit.LANES)
     constants = np.concatenate([rule.matrix.ravel(), rule.weights])

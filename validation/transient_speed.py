@@ -97,7 +97,7 @@ def _in_c(
 ) -> tuple[Callable[[], object], Array]:
     """A call of transient.c for cases (inertia, c0, c2) and their energies at the start, and its
     answer: energy at the end, and duration."""
-    (m, s), rule = tables.inertia.shape, tables.rule
+    (_, m, s), rule = tables.inertia.shape, tables.rule
     answer, room = np.empty((len(cases[1]), 2)), np.empty((3 * m * s + 2 * m) * limit.LANES)
     constants = np.concatenate([rule.matrix.ravel(), rule.weights])
     given = constants, tables.width, tables.inertia, tables.torque, *cases, room, answer

@@ -7,22 +7,19 @@ be largest.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crankmbs.batch.balances import Balances, balances
-from crankmbs.compare.bodies import bodies_of
+from crankmbs.compare.bodies import Bodies, bodies_of
 from crankmbs.compare.lectured import LECTURES, quantities_by
 from crankmbs.compare.quantities import QUANTITIES, cycle_angles, observed
 from crankmbs.errors import InputError
 from crankmbs.mechanics.newton_euler import UNITS
-from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array, Index
-from crankmbs.numerics.collocation import Rule
 from crankmbs.scene.scene import Scene
 
 __all__ = ["CURVES", "EACH", "LINEAR", "Deviations"]
@@ -39,100 +36,100 @@ _MOVING = np.array([[1.0], [0.0]])  # the speed, of what a lecture adds up: iner
 
 @dataclass(frozen=True)
 class Deviations:
-    """A, B, C and D of every curve in the m cells of a period.
+    """A, B, C and D of every curve in the cells of a period, of several machines.
 
-    begin, sense : crank angle at its beginning [rad], and sense of rotation; width : of the cells
-        [rad], shape (m,); sparse : numbers of nodes, shape (n,)
+    theta, crank, cylinders : crank angles [rad] at the s nodes of the m cells of a share of the
+        period, shape (machines, m, s), and the variables of `crankmbs.batch.balances` there
+    turns : the cylinder that is in the first share where the first one is in each
+    sparse : numbers of nodes of all shares, shape (n,); of_case : machine of each case
     """
 
-    train: CrankTrain
-    begin: float
-    sense: float
-    rule: Rule
-    width: Array
+    scenes: Sequence[Scene]
+    theta: Array
+    crank: dict[str, Array]
+    cylinders: dict[str, Array]
+    turns: Index
     sparse: Index
+    of_case: Index
 
     @cached_property
     def at_sparse(self) -> Array:
-        """At the sparse nodes, shape (n, 4, curves)."""
-        cells, places = np.divmod(self.sparse, len(self.rule.nodes))
-        table = self._table(cells, self.rule.nodes[places])
-        return np.ascontiguousarray(table.reshape(CURVES, 4, -1).T)
+        """At the sparse nodes, shape (n, machines, 4, curves)."""
+        (count, m, s), (first, *_) = self.theta.shape, np.split(self.sparse, len(self.turns))
+        run, lectures = self._parts(np.add.outer(m * s * np.arange(count), first).ravel())
+        table = np.empty((len(QUANTITIES), EACH, 4, *run.shape[2:]))
+        table[:, :, :3], table[:, :, 3] = run[:, None], run[:, None, 0]
+        table[:, :, 2:] -= lectures[:, :, ::-1]
+        table = table.reshape(CURVES, 4, -1, count, len(first)).transpose(2, 4, 3, 1, 0)
+        return table.reshape(-1, count, 4, CURVES)
 
     @cached_property
-    def _tables(self) -> tuple[Array, NDArray[np.bool_]]:
-        """Tables at all nodes, shape (m, curves, 4, s), of those cells that are marked."""
-        shape = len(self.width), CURVES, 4, len(self.rule.nodes)
-        return np.empty(shape), np.zeros(len(self.width), bool)
+    def _known(self) -> list[Any]:
+        """Which cells were looked at, and the parts there."""
+        return [np.zeros(self.theta[..., 0].size, bool), None]
 
-    def at(self, cell: Index, curve: Index) -> Array:
-        """Of some curves at the nodes of some cells, shape (c, 4, s)."""
-        (tables, made), s = self._tables, len(self.rule.nodes)
-        missing = np.unique(cell[~made[cell]])
-        if len(missing):
-            cells, places = np.repeat(missing, s), np.tile(self.rule.nodes, len(missing))
-            table = self._table(cells, places).reshape(CURVES, 4, len(missing), s)
-            tables[missing], made[missing] = np.moveaxis(table, 2, 0), True
-        return np.asarray(tables[cell, curve])
+    def at(self, case: Index, cell: Index, curve: Index) -> Array:
+        """Of some curves of cases at the nodes of some cells, shape (4, c, s)."""
+        (count, m, s), (share, cell) = self.theta.shape, np.divmod(cell, self.theta.shape[1])
+        cell += m * self.of_case[np.minimum(case, len(self.of_case) - 1)]
+        marked = np.bincount(cell, minlength=count * m) > 0
+        if (marked > self._known[0]).any():
+            marked |= self._known[0]
+            nodes = np.add.outer(s * np.flatnonzero(marked), np.arange(s)).ravel()
+            self._known[:] = marked, self._parts(nodes)
+        marked, parts = self._known
+        row = (np.cumsum(marked) - 1)[cell]
+        run, lectures = (part.reshape(*part.shape[:-1], -1, s) for part in parts)
+        quantity, by = np.divmod(curve, EACH)
+        a, b, c = np.moveaxis(run[quantity, :, share, row], 1, 0)
+        square, one = np.moveaxis(lectures[quantity, by, :, share, row], 1, 0)
+        return np.stack([a, b, c - one, a - square])
 
-    def _table(self, cells: Index, places: Array) -> Array:
-        """At places in cells, shape (quantities, 1 + lectures, 4, n)."""
-        turned = (np.cumsum(self.width) - self.width)[cells] + self.width[cells] * places
-        theta = self.begin + self.sense * turned
-        parts = balances(self.train, theta, self.sense)
-        run, scene = _observed(self.train.scene, parts, theta), self.train.scene
-        gas = parts.cylinders["gas_force"][:, 0].T / (scene.piston.gas_area or 1.0)
-        lectures = _lectured(scene, gas, theta)
-        table = np.empty((len(QUANTITIES), EACH, 4, len(theta)))
-        table[:, :, :2] = run[:, None, :2]
-        table[:, 0, 2], table[:, 0, 3] = run[:, 2], run[:, 0]
-        table[:, 1:, 2] = run[:, None, 2] - lectures[:, :, 1]
-        table[:, 1:, 3] = run[:, None, 0] - lectures[:, :, 0]
-        return table
+    def _parts(self, nodes: Index) -> tuple[Array, Array]:
+        """What the run and the lectures have at some nodes: parts that belong to omega^2, alpha and
+        1, shape (quantities, 3, shares, n), of what goes with the speed the first to omega; and,
+        at a constant speed, to its square and to 1, shape (quantities, 1 + lectures, 2, shares, n),
+        no numbers where one says nothing."""
+        of, theta, scene = nodes // self.theta[0].size, self.theta.ravel()[nodes], self.scenes[0]
+        bodies = Bodies(*np.array([bodies_of(one) for one in self.scenes]).T[..., of, np.newaxis])
+        variables = {name: each.take(nodes, -1) for name, each in self.crank.items()} | {
+            name: np.moveaxis(each.take(nodes, -1), 0, -1) for name, each in self.cylinders.items()
+        }
+        phi = cycle_angles(scene, theta)
+        answer = observed(bodies, variables, phi, UNITS.square, UNITS.alpha)
+        run = np.zeros((len(QUANTITIES), 3, len(self.turns), len(theta)))
+        for part, (name, values) in zip(run, self._first(answer), strict=True):
+            if name in _OF_ANGLE:
+                part[2] = values[0]
+            elif name == "piston velocity":
+                part[0] = values[0]
+            else:
+                part[:] = values
+        lectures = np.empty((len(QUANTITIES), EACH, 2, *run.shape[2:]))
+        lectures[:, 0] = 0.0
+        gas, made = variables["gas_pressure"][0], dict[object, Any]()
+        difference = np.stack([0.0 * gas.T, gas.T]).swapaxes(1, 2)
+        motion = _MOVING, 0.0 * _MOVING
+        for by, formulas in enumerate(LECTURES.values(), start=1):
+            try:
+                made |= {one: one(phi, bodies) for one in formulas if one not in made}
+            except InputError:
+                lectures[:, by] = np.nan
+                continue
+            factors = made[formulas.motion], made[formulas.forces]
+            answer = quantities_by(scene, bodies, factors, theta, difference, motion)
+            for part, (_, values) in zip(lectures[:, by], self._first(answer), strict=True):
+                part[:] = values
+            lectures[0, by, 0] = 0.0  # of the displacement, which depends on the angle alone
+        return run, lectures
 
-
-def _first(name: str, values: Array) -> Array:
-    """Of a quantity that every cylinder has, shape (..., n, cylinders), that of cylinder 1."""
-    return values[..., 0] if QUANTITIES[name].per_cylinder else values
-
-
-def _observed(scene: Scene, balances: Balances, theta: Array) -> Array:
-    """The quantities of cylinder 1: parts that belong to omega^2, alpha and 1, shape (quantities,
-    3, n); of what goes with the speed the first belongs to omega."""
-    cylinders = {name: np.moveaxis(values, 0, -1) for name, values in balances.cylinders.items()}
-    answer = observed(scene, balances.crank | cylinders, theta, UNITS.square, UNITS.alpha)
-    parts = np.zeros((len(QUANTITIES), 3, len(theta)))
-    for part, name in zip(parts, QUANTITIES, strict=True):
-        values = _first(name, answer[name])
-        if name in _OF_ANGLE:
-            part[2] = values[0]
-        elif name == "piston velocity":
-            part[0] = values[0]
-        else:
-            part[:] = values
-    return parts
-
-
-def _lectured(scene: Scene, pressure: Array, theta: Array) -> Array:
-    """What the lectures say of them at a constant speed: parts that belong to its square and to 1,
-    shape (quantities, lectures, 2, n); no numbers where one says nothing.
-
-    pressure : shape (n, cylinders) [Pa]
-    """
-    phi, bodies = cycle_angles(scene, theta), bodies_of(scene)
-    difference, motion = np.stack([0.0 * pressure, pressure]), (_MOVING, 0.0 * _MOVING)
-    parts = np.full((len(QUANTITIES), len(LECTURES), 2, len(theta)), np.nan)
-    made: dict[object, Any] = {}
-    for k, formulas in enumerate(LECTURES.values()):
-        try:
-            factors = [
-                made[one] if one in made else made.setdefault(one, one(phi, bodies))
-                for one in formulas
-            ]
-        except InputError:
-            continue
-        answer = quantities_by(scene, (factors[0], factors[1]), theta, difference, motion)
-        for part, name in zip(parts[:, k], QUANTITIES, strict=True):
-            part[:] = _first(name, answer[name])
-        parts[0, k, 0] = 0.0  # of the displacement, which depends on the angle alone
-    return parts
+    def _first(self, answer: dict[str, Array]) -> Iterator[tuple[str, Array]]:
+        """The quantities of cylinder 1 in all shares, shape (..., shares, n), and of the engine."""
+        for name, (_, _, per_cylinder) in QUANTITIES.items():
+            values = answer[name]
+            yield (
+                name,
+                values.swapaxes(-1, -2)[..., self.turns, :]
+                if per_cylinder
+                else values[..., None, :],
+            )

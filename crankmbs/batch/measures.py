@@ -1,4 +1,4 @@
-"""What motions of one machine over a period amount to: numbers of one pass, and their errors from
+"""What motions over a period amount to: numbers of one pass, and their errors from
 those of two."""
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.batch.lectures import CURVES, EACH, LINEAR
-from crankmbs.batch.machine import Machine, Pass
+from crankmbs.batch.machine import Machine, Pass, at_cell
 from crankmbs.batch.motion import Cases, Cuts
 from crankmbs.batch.passes import Pairs, Solved
 from crankmbs.batch.peaks import Curves, Peaks, Which, find_peaks, sizes_at, sparse_nodes
@@ -36,10 +36,9 @@ class _Motions(NamedTuple):
     load: Array
 
 
-def measure(machine: Machine, pairs: Pairs) -> tuple[Numbers, Numbers]:
-    """The numbers of k motions of a machine, which have the same tables, and by how much they may
-    be off: what those of both passes differ by, their rounding, and what polynomials may miss of
-    peaks.
+def measure(pairs: Pairs) -> tuple[Numbers, Numbers]:
+    """The numbers of k motions, and by how much they may be off: what those of both passes differ
+    by, their rounding, and what polynomials may miss of peaks.
 
     Returns
     -------
@@ -47,7 +46,7 @@ def measure(machine: Machine, pairs: Pairs) -> tuple[Numbers, Numbers]:
     closure, the largest difference of the energies of both passes over the greatest energy;
     relative, the largest error of the speed and of the peaks of joints, relative
     """
-    one, other = pairs.passes
+    machine, (one, other) = pairs.machine, pairs.passes
     answer, peaks = _numbers(machine, one, pairs.cases, None)
     check, _ = _numbers(machine, other, pairs.cases, peaks)
     rounded = {"speed_gain": answer["fast"], "fluctuation": answer["fast"] / answer["mean_speed"]}
@@ -86,12 +85,13 @@ def measure(machine: Machine, pairs: Pairs) -> tuple[Numbers, Numbers]:
 def _places(solved: Solved) -> tuple[Array, Array]:
     """Angles turned [rad] to where cells begin, and their widths, shape (1 or k, cells)."""
     width, cuts = solved.tables.width, solved.cuts
-    begin = np.cumsum(width) - width
+    begin = np.cumsum(width, axis=1) - width
     if cuts is None:
-        return begin[None], width[None]
+        return begin, width
     cell, place = cuts
     begin, width = (
-        np.column_stack([np.tile(row, (len(cell), 1)), row[cell]]) for row in (begin, width)
+        np.append(row + 0.0 * place[:, None], at_cell(row[..., None], cell), axis=1)
+        for row in (begin, width)
     )
     before = place * width[:, -1]
     begin[:, -1] += before
@@ -116,7 +116,7 @@ def _numbers(
     `crankmbs.measures.Measures` has by these names
     """
     (tables, courses, cuts), of = solved, _motions(solved, machine.sense, cases)
-    width, turned = _places(solved)[1][..., None], float(machine.answer.width.sum())
+    width, turned = _places(solved)[1][..., None], float(machine.answer.width[0].sum())
     share, rods = width * tables.rule.weights, _combined(tables.rods, of, cuts)
     slow, load = of.slow, of.load
     fastest, strongest = (np.abs(each).max(axis=(1, 2)) for each in (of.omega, rods))
@@ -141,7 +141,7 @@ def _numbers(
     fast, slowest = largest[:, -2], 2.0 * fastest - largest[:, -1]
     polynomials = at_nodes(sizes.shape[-1])
     means = impulses(polynomials, vectors[:, :-4], sizes[:, :-4], width * slow) / time[:, None]
-    strokes = [gear.stroke for gear in machine.scene.running_gear]
+    strokes = np.array([[gear.stroke for gear in one.running_gear] for one in machine.scenes])
     numbers = {
         "duration": machine.shares * time,
         "greatest": courses.energy.max(axis=(1, 2)),
@@ -156,7 +156,7 @@ def _numbers(
         "torque_max": largest[:, -4] - top,
         "torque_min": top - largest[:, -3],
         "mean_speed": mean,
-        "piston_speed": np.outer(np.abs(mean), strokes) / math.pi,
+        "piston_speed": np.abs(mean)[:, None] * strokes / math.pi,
         "fluctuation": (fast - slowest) / np.abs(mean),
         "speed_gain": _gained(solved, machine.sense, cases.mass),
         "crank_torque": (share * rods).sum(axis=(1, 2)) / turned,
@@ -183,7 +183,7 @@ def _gained(solved: Solved, sense: float, mass: Array) -> Array:
     """The speed gained over the period [rad/s]."""
     (tables, courses, cuts), inertia = solved, solved.tables.at_begin + mass
     if cuts is not None:
-        rows, place = tables.inertia[cuts.cell].T, cuts.place
+        rows, place = at_cell(tables.inertia, cuts.cell).T, cuts.place
         inertia = at_nodes(len(rows)).part(rows, place, place)[0] + mass
     begin, end = (np.sqrt(2.0 * each / inertia) for each in (courses.begin, courses.ends[:, -1]))
     return np.asarray(sense * (end - begin))
@@ -191,21 +191,24 @@ def _gained(solved: Solved, sense: float, mass: Array) -> Array:
 
 def _powers(machine: Machine, tables: Pass, time: Array) -> Numbers:
     """Of gas and friction on the pistons, over periods of these durations [s]."""
-    gas, rubbed, *ends = (
-        Number(machine.shares * by_turns(works, machine.shares), 0.0 * works)
-        for works in tables.works
-    )
-    works = Works(gas, rubbed, (ends[0], ends[1]) if ends else None)
-    of_gas = powers(machine.scene, works, 1.0, time)
-    numbers = {
-        name: np.tile(number.value, (len(time), 1))
-        if name.startswith("imep")
-        else number.value + 0.0 * time
-        for name, number in of_gas.items()
-    }
-    if machine.scene.friction is not None:
-        numbers.setdefault("mechanical_efficiency", np.full_like(time, np.nan))
-    return numbers
+    shares, every = machine.shares, []
+    for scene, of_scene, period in zip(
+        machine.scenes, tables.works, np.split(time, len(tables.works)), strict=True
+    ):
+        gas, rubbed, *ends = (
+            Number(shares * by_turns(works, shares), 0.0 * works) for works in of_scene
+        )
+        works = Works(gas, rubbed, (ends[0], ends[1]) if ends else None)
+        numbers = {
+            name: np.tile(number.value, (len(period), 1))
+            if name.startswith("imep")
+            else number.value + 0.0 * period
+            for name, number in powers(scene, works, 1.0, period).items()
+        }
+        if scene.friction is not None:
+            numbers.setdefault("mechanical_efficiency", np.full_like(period, np.nan))
+        every.append(numbers)
+    return {name: np.concatenate([numbers[name] for numbers in every]) for name in every[0]}
 
 
 def by_turns(values: Array, shares: int) -> Array:
@@ -218,8 +221,9 @@ def _motions(solved: Solved, sense: float, cases: Cases) -> _Motions:
     (tables, courses, cuts), (mass, c0, c1, c2) = solved, (x[:, None, None] for x in cases[:4])
     energy, rows = courses.energy, [tables.inertia, tables.slope, tables.torque]
     if cuts is not None:
-        whole = np.tile(np.arange(len(tables.width)), (len(energy), 1))
-        rows = [row[np.column_stack([whole, cuts.cell])] for row in rows]
+        rows = [
+            np.append(row + 0.0 * mass, at_cell(row, cuts.cell)[:, None], axis=1) for row in rows
+        ]
     inertia, slope, torque = rows
     total = inertia + mass
     square = 2.0 * energy / total
@@ -231,8 +235,9 @@ def _motions(solved: Solved, sense: float, cases: Cases) -> _Motions:
 
 
 def _combined(table: Array, of: _Motions, cuts: Cuts | None) -> Array:
-    """What a table, shape (..., 3, m, s), makes of omega^2, alpha and 1, shape (k, ..., m, s)."""
-    lead, (k, _, s), m = table.shape[:-3], of.square.shape, table.shape[-2]
+    """What a table, shape (machines, ..., 3, m, s), makes of omega^2, alpha and 1, shape (k, ...,
+    m, s)."""
+    lead, (k, _, s), m = table.shape[1:-3], of.square.shape, table.shape[-2]
     square, alpha = (each.reshape(k, *np.ones_like(lead), -1, s) for each in of[:2])
     values = np.empty((k, *lead, square.shape[-2], s))
 
@@ -244,7 +249,7 @@ def _combined(table: Array, of: _Motions, cuts: Cuts | None) -> Array:
 
     fill(slice(m), np.moveaxis(table, -3, 0))
     if cuts is not None:
-        fill(slice(m, None), np.moveaxis(table[..., cuts.cell, :], (-3, -2), (0, 1))[..., None, :])
+        fill(slice(m, None), np.moveaxis(at_cell(table, cuts.cell), -2, 0)[..., None, :])
     return values
 
 
@@ -275,7 +280,7 @@ def _cut(values: Array, cuts: Cuts) -> Array:
 def _curves(tables: Pass, vectors: Array, sizes: Array, cuts: Cuts | None) -> Curves:
     """Of vectors at all nodes, shape (k, r, components, m, s), and their sizes."""
     k, r, m, s = sizes.shape
-    nodes = np.arange(m * s) if cuts else sparse_nodes(tables.width, s)
+    nodes = np.arange(m * s) if cuts else sparse_nodes(tables.width.max(axis=0), s)
 
     def some_sizes(some: slice) -> Array:
         seen = sizes[some].reshape(-1, r, m * s)[..., nodes]
@@ -299,8 +304,13 @@ def _of_lectures(tables: Pass, of: _Motions, mean: Array, cuts: Cuts | None) -> 
 
     def sizes(some: slice) -> Array:
         seen, table = powers[some, cells % m, :, :, nodes], lectures.at_sparse
-        values = seen[:, :, 0] @ table
-        values[..., LINEAR] = seen[:, :, 1] @ table[..., LINEAR]
+        if table.shape[1] > 1:
+            table = table[:, lectures.of_case[some]]
+        shape = len(cells), table.shape[1], -1
+        square, linear = (seen[:, :, line].reshape(*shape, 4) for line in range(2))
+        values = square @ table
+        values[..., LINEAR] = linear @ table[..., LINEAR]
+        values = values.reshape(len(cells), -1, CURVES)
         if cuts is not None:  # of other nodes
             values[cells[:, None] == cuts.cell[some]] = 0.0
         return np.asarray(np.abs(values, out=values))
@@ -309,8 +319,8 @@ def _of_lectures(tables: Pass, of: _Motions, mean: Array, cuts: Cuts | None) -> 
         case, curve, cell = which
         line = ((curve >= LINEAR.start) & (curve < LINEAR.stop)).astype(np.intp)
         whole = cell if cuts is None else np.where(cell == m - 1, cuts.cell[case], cell)
-        table, power = lectures.at(whole, curve), powers[case, cell % m, line]
-        values = np.einsum("cps,cps->cs", table, power).T[:, None].copy()
+        table, power = lectures.at(case, whole, curve), powers[case, cell % m, line]
+        values = np.einsum("pcs,cps->cs", table, power).T[:, None].copy()
         if cuts is not None:
             low = np.where(cell == m - 1, cuts.place[case], 0.0)
             high = np.where(cell == cuts.cell[case], cuts.place[case], 1.0)

@@ -1,9 +1,10 @@
-"""Motions of one machine over whole periods: settled ones, and free runs up to their ends.
+"""Motions over whole periods: settled ones, and free runs up to their ends.
 
 The energy obeys dE/dtheta = T + c0 + c1 omega + c2 omega^2, made linear in E about the last iterate
 where there is c1: a cell is an affine map of the energy at its begin, as in a run alone
 (`crankmbs.numerics.collocation`), and a period is one of the energy at its beginning. Cases are the
-first axis; what one has does not depend on the others.
+first axis, of tables too unless these are of one machine; what a case has does not depend on the
+others.
 """
 
 from __future__ import annotations
@@ -87,9 +88,10 @@ class _Equation:
 
     def __init__(self, tables: Pass, cases: Cases, sense: float, first: int = 0) -> None:
         mass, c0, c1, c2 = (each[:, None, None] for each in cases[:4])
-        self.rule, self.sense, self.width = tables.rule, sense, tables.width[first:]
-        self.half = 0.5 * (tables.inertia[first:] + mass)
-        self.push, self.drag = tables.torque[first:] + c0, 0.5 * c1
+        self.rule, self.sense = tables.rule, sense
+        self.half = 0.5 * (tables.inertia[:, first:] + mass)
+        self.width = tables.width[:, first:, None] + 0.0 * mass
+        self.push, self.drag = tables.torque[:, first:] + c0, 0.5 * c1
         self.rate = c2 / self.half
         self.viscous = cases.c1 != 0.0
 
@@ -99,7 +101,7 @@ class _Equation:
             half, drag = self.half[which], self.drag[which]
             omega = self.sense * np.sqrt(energy / half)
             rate = self.rate[which] + drag / (half * omega)
-            return self._composed(self.push[which] + drag * omega, rate)
+            return self._composed(which, self.push[which] + drag * omega, rate)
         if len(which) == len(self.viscous):
             return self._plain
         return Maps(*(each[which] for each in self._plain))
@@ -107,10 +109,10 @@ class _Equation:
     @cached_property
     def _plain(self) -> Maps:
         """Those without c1, the same in every period."""
-        return self._composed(self.push, self.rate)
+        return self._composed(slice(None), self.push, self.rate)
 
-    def _composed(self, push: Array, rate: Array) -> Maps:
-        return self.rule.maps(self.sense * self.width[:, None], push, rate).composed()
+    def _composed(self, which: Index | slice, push: Array, rate: Array) -> Maps:
+        return self.rule.maps(self.sense * self.width[which], push, rate).composed()
 
     def solve(self, begin: Array, guess: Array, which: Index) -> tuple[Array, Array]:
         """Energies of some cases at nodes and edges, from that at the beginning on, by Newton's
@@ -130,13 +132,13 @@ class _Equation:
 
     def slowness(self, energy: Array, which: Index) -> Array:
         """Time for the unit of length of a cell [s] at its nodes."""
-        return np.asarray(self.width[:, None] * np.sqrt(self.half[which] / energy))
+        return np.asarray(self.width[which] * np.sqrt(self.half[which] / energy))
 
     def periods(self, nudge: float) -> list[Period]:
         """The map of all cells of every case without c1, each raised by the nudge before it."""
         maps, size = self._plain, self.half[0].size
         growth = maps.growth[:, -1] + nudge * (1.0 + maps.growth[:, -1])
-        weight = self.width[:, None] * self.rule.weights * np.sqrt(self.half)
+        weight = self.width * self.rule.weights * np.sqrt(self.half)
         rows = (each.reshape(-1, size) for each in (maps.gain, maps.shift, weight))
         return [Period(*each) for each in zip(growth, maps.rise[:, -1], *rows, strict=True)]
 
@@ -192,7 +194,7 @@ def over_periods(
         nodes, edges = part.solve(at, at[:, None, None], which)
         at, least = edges[:, -1].copy(), nodes.min(axis=(1, 2))
     energies = at[:, None, None] + 0.0 * equation.half
-    edges = np.full((k, len(tables.width) + 1), np.nan)
+    edges = np.full((k, tables.width.shape[1] + 1), np.nan)
     while len(which := which[(left[which] > 0.0) & (least[which] > 0.0)]):
         begun = at[which] * (1.0 + nudge)
         energies[which], edges[which] = equation.solve(begun, energies[which], which)
@@ -229,7 +231,11 @@ def to_times(
 
     nudge : by what part of itself every period raises the energy besides
     """
-    equation, each, m = _Equation(tables, cases, sense), np.arange(len(energy)), len(tables.width)
+    equation, each, m = (
+        _Equation(tables, cases, sense),
+        np.arange(len(energy)),
+        tables.width.shape[1],
+    )
     last = _last_periods(equation, cases.end, energy, nudge)
     if cell is None:
         cell = np.minimum((last.ahead[:, 1:] < last.left[:, None]).sum(axis=1), m - 1)

@@ -36,16 +36,17 @@ class Solved(NamedTuple):
     courses: Courses
     cuts: Cuts | None = None
 
-    def part(self, which: NDArray[np.bool_]) -> Solved:
-        """Some of them."""
+    def part(self, tables: Pass, which: NDArray[np.bool_]) -> Solved:
+        """Some of them, with the tables of these."""
         cuts = None if self.cuts is None else part_of(self.cuts, which)
-        return Solved(self.tables, part_of(self.courses, which), cuts)
+        return Solved(tables, part_of(self.courses, which), cuts)
 
 
 class Pairs(NamedTuple):
-    """Motions over their last periods, k cases: their numbers, shape (k,), and what they have of
-    their own; answer and check."""
+    """Motions over their last periods, k cases: what they share, their numbers, shape (k,), and
+    what they have of their own; answer and check."""
 
+    machine: Machine
     which: Index
     cases: Cases
     passes: tuple[Solved, Solved]
@@ -85,7 +86,9 @@ def pairs_of(machine: Machine, which: Index, cases: Cases) -> Pairs:
         sure &= check.least > 0.0
     else:
         sure = _keeps_clear(machine, cases, least)
-    return Pairs(which[sure], part_of(cases, sure), (passes[0].part(sure), passes[1].part(sure)))
+    of = machine.part(sure)
+    both = passes[0].part(of.answer, sure), passes[1].part(of.check, sure)
+    return Pairs(of, which[sure], part_of(cases, sure), both)
 
 
 def _passes(machine: Machine, cases: Cases, energy: Array) -> tuple[Solved, Solved]:
@@ -106,12 +109,12 @@ def _passes(machine: Machine, cases: Cases, energy: Array) -> tuple[Solved, Solv
 
 def _keeps_clear(machine: Machine, cases: Cases, least: Array) -> NDArray[np.bool_]:
     """Whether runs with those least energies [J] keep clear of rest."""
-    total = cases.mass + float(machine.answer.inertia.min())
+    total = cases.mass + machine.answer.inertia.min(axis=(1, 2))
     slow = np.sqrt(2.0 * np.maximum(np.nan_to_num(least), 0.0) / total)
     loads = np.abs(cases.c0) + np.abs(cases.c1) * slow
     return np.asarray(least > _CLEAR * (_most(machine) + loads))
 
 
-def _most(machine: Machine) -> float:
-    """The largest torque without loads [N m]."""
-    return float(np.max(np.abs(machine.answer.torque)))
+def _most(machine: Machine) -> Array:
+    """The largest torque without loads [N m], shape (machines,)."""
+    return np.asarray(np.abs(machine.answer.torque).max(axis=(1, 2)))

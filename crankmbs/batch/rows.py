@@ -96,22 +96,30 @@ def _of_joints(group: Group, pairs: dict[str, tuple[Array, Array]]) -> dict[str,
 
 
 def _of_pressures(group: Group) -> dict[str, tuple[Array, Array]]:
-    """The largest pressures of every cylinder, which are alike in all motions."""
-    scene = group.machine.scene
+    """The largest pressures of every cylinder, which are alike in all motions of a machine."""
+    every = [_highest(scene) for scene in group.machine.scenes]
+    pairs, cases = {}, np.zeros((len(group.which), 1))
+    for name in every[0]:
+        peaks = np.array([highest[name] for highest in every])
+        pairs[name] = peaks[..., 0] + cases, peaks[..., 1] + cases
+    return pairs
+
+
+def _highest(scene: Scene) -> dict[str, list[tuple[float, float]]]:
+    """The peak of each pressure and its error."""
     train = crank_train(scene)
-    ends = {} if train.pressure is None else {"gauge_pressure": train.pressure}
+    ends = {"gauge_pressure": train.pressure} if train.pressure else {}
     if train.crank_end is not None:
         ends = {"gauge_pressure_head_end": pressures_of(scene) or ()}
         ends["gauge_pressure_crank_end"] = train.crank_end
-    return {name: _highest(pressures, len(group.which)) for name, pressures in ends.items()}
+    once = {each: _peak_of(each) for each in dict.fromkeys(sum(ends.values(), ()))}
+    return {name: [once[each] for each in pressures] for name, pressures in ends.items()}
 
 
-def _highest(pressures: Sequence[PeriodicPressure], count: int) -> tuple[Array, Array]:
-    """The peak of each pressure and its error, in so many cases."""
-    peaks = {each: (each.peak[1], each.perturbed.peak[1]) for each in dict.fromkeys(pressures)}
-    value, perturbed = np.array([peaks[each] for each in pressures]).T
-    error = np.abs(perturbed - value) + ROUNDING * np.abs(value)
-    return np.tile(value, (count, 1)), np.tile(error, (count, 1))
+def _peak_of(pressure: PeriodicPressure) -> tuple[float, float]:
+    """The highest pressure and its error."""
+    (_, value), (_, perturbed) = pressure.peak, pressure.perturbed.peak
+    return value, abs(perturbed - value) + ROUNDING * abs(value)
 
 
 def _of_lectures(group: Group) -> dict[str, Array]:

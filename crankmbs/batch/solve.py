@@ -3,6 +3,7 @@ asked for needs."""
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Hashable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -11,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.batch.machine import Machine, key_of, machine_of
+from crankmbs.batch.machine import Machine, family_of, forces_of, key_of, machine_of
 from crankmbs.batch.measures import Numbers, measure
 from crankmbs.batch.motion import Cases, part_of
 from crankmbs.batch.passes import cases_of, pairs_of
@@ -24,11 +25,13 @@ from crankmbs.scene.scene import Scene
 __all__ = ["Group", "mean_speed_together", "solved_together"]
 
 _KEPT = 12  # machines
-_MANY = 500_000  # forces at nodes at once: 4 MB, and several times as much beside them
+_FEW = 4  # cases: a machine of no more is solved together with others
+_MANY = 1_000_000  # forces at nodes at once: 8 MB, and several times as much beside them
 
 
 class Group(NamedTuple):
-    """Scenes of one machine that are solved together: their numbers, shape (n,), and what
+    """Scenes that are solved together, of one machine or each of its own: their numbers, shape
+    (n,), and what
     `crankmbs.batch.measures.measure` has of them."""
 
     machine: Machine
@@ -45,14 +48,22 @@ def solved_together(scenes: Sequence[Scene | None]) -> Iterator[Group]:
     >>> [group.which.tolist() for group in solved_together([scene, None, scene])]
     [[0, 2]]
     """
-    alike: dict[_Alike, list[int]] = {}
-    for number, scene in enumerate(scenes):
-        if scene is not None and loads_of(scene) is not None:
-            alike.setdefault(_Alike(key_of(scene), scene), []).append(number)
-    for of, numbers in alike.items():
-        of_machine = [scene for scene in (scenes[k] for k in numbers) if scene is not None]
+    served = {k: each for k, each in enumerate(scenes) if each is not None and loads_of(each)}
+    alike, families = defaultdict[Hashable, list[int]](list), defaultdict[Hashable, list[int]](list)
+    for number, scene in served.items():
+        alike[key_of(scene)].append(number)
+    for key, numbers in alike.items():
         with suppress(CrankmbsError):  # alone the scene says what it lacks
-            yield from _of_machine(of, np.array(numbers), cases_of(of_machine))
+            family = family_of(served[numbers[0]])
+            if family is not None:
+                families[family if len(numbers) <= _FEW else key] += numbers
+    for numbers in families.values():
+        one = len({key_of(served[number]) for number in numbers}) == 1
+        many = len(numbers) if one else max(1, _MANY // forces_of(served[numbers[0]]))
+        for first in range(0, len(numbers), many):
+            which = numbers[first : first + many]
+            with suppress(CrankmbsError):
+                yield from _of_machine([served[number] for number in which], np.array(which), one)
 
 
 def mean_speed_together(scene: Scene) -> float:
@@ -81,13 +92,16 @@ def _machine(alike: _Alike, finest: bool) -> Machine:
     return machine_of(alike.scene, finest=finest)
 
 
-def _of_machine(alike: _Alike, which: Index, cases: Cases) -> Iterator[Group]:
-    """The scenes of one machine, by the coarsest rules that do; those that err too much by the
-    finest are left."""
-    left = np.arange(len(which))
+def _of_machine(scenes: Sequence[Scene], which: Index, one: bool) -> Iterator[Group]:
+    """The scenes of one machine, or of as many machines, by the coarsest rules that do; those that
+    err too much by the finest are left."""
+    left, cases = np.arange(len(which)), cases_of(scenes)
     for finest in (False, True):
-        machine = _machine(alike, finest)
-        parts = [] if machine.folds else list(_parts(machine, left, cases))
+        if one:
+            machine = _machine(_Alike(key_of(scenes[0]), scenes[0]), finest)
+        else:
+            machine = machine_of(*(scenes[k] for k in left.tolist()), finest=finest)
+        parts = list(_parts(machine, left, cases))
         if not parts:
             return
         left = np.concatenate([part.which for part in parts])
@@ -96,7 +110,7 @@ def _of_machine(alike: _Alike, which: Index, cases: Cases) -> Iterator[Group]:
         good = numbers["relative"] <= cases.rtol[left]
         if good.any():
             chosen = ({name: of[name][good] for name in of} for of in (numbers, errors))
-            yield Group(machine, which[left[good]], *chosen)
+            yield Group(parts[0].machine.part(good), which[left[good]], *chosen)
         left = left[~good]
         if machine.finest or len(left) == 0:
             return
@@ -108,9 +122,10 @@ def _joined(parts: list[Numbers]) -> Numbers:
 
 def _parts(machine: Machine, which: Index, cases: Cases) -> Iterator[Group]:
     """Those of some cases that have a motion, some after the others."""
-    many = max(1, _MANY // machine.answer.forces[:, :, 0].size)
+    many = max(1, _MANY // machine.answer.forces[0, :, :, 0].size)
+    many = many if len(machine.scenes) == 1 else len(which)
     for first in range(0, len(which), many):
         some = which[first : first + many]
         pairs = pairs_of(machine, some, part_of(cases, some))
         if len(pairs.which):
-            yield Group(machine, pairs.which, *measure(machine, pairs))
+            yield Group(pairs.machine, pairs.which, *measure(pairs))

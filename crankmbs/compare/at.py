@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from crankmbs.compare.bodies import bodies_of
-from crankmbs.compare.quantities import QUANTITIES, observed
+from crankmbs.compare.quantities import QUANTITIES, cycle_angles, observed
 from crankmbs.errors import InputError, shown
 from crankmbs.measures.interpolate import read_at
 from crankmbs.measures.span import last_span, passes_over
@@ -163,8 +163,9 @@ def _variables(data: xr.Dataset) -> Iterator[Reading]:
 def _lecture_forces(scene: Scene, data: xr.Dataset) -> Iterator[Reading]:
     """The lectures' forces and torque at the one point."""
     variables = {str(name): variable.values for name, variable in data.variables.items()}
-    motion = (variables[name] for name in ("crank_angle", "crank_speed", "crank_acceleration"))
-    lecture_values = observed(scene, variables, *motion)
+    phi = cycle_angles(scene, variables["crank_angle"])
+    motion = variables["crank_speed"], variables["crank_acceleration"]
+    lecture_values = observed(bodies_of(scene), variables, phi, *motion)
     for name in _FORCES:
         units, symbol, _ = QUANTITIES[name]
         error, plain = _error(scene, data, name), symbol.replace("{", "").replace("}", "")

@@ -9,8 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crankmbs.compare.bodies import bodies_of
 from crankmbs.compare.lectured import Formulas, lectured
-from crankmbs.compare.quantities import OBSERVABLES, observed
+from crankmbs.compare.quantities import OBSERVABLES, cycle_angles, observed
 from crankmbs.compare.size import TIE, Size, size_of, top_of
 from crankmbs.errors import InputError
 from crankmbs.measures import Span, last_span
@@ -124,7 +125,9 @@ class Excerpt:
 
     def quantities(self, variables: Answer, omega: Array, alpha: Array) -> Answer:
         """Those of the variables of a result at theta, omega and alpha."""
-        answer = observed(self.result.scene, variables, self.theta, omega, alpha)
+        scene = self.result.scene
+        phi = cycle_angles(scene, self.theta)
+        answer = observed(bodies_of(scene), variables, phi, omega, alpha)
         further = {name: variables.get(name.replace(" ", "_")) for name in self.others}
         answer |= {name: curve for name, curve in further.items() if curve is not None}
         return self._of_cylinder(answer)

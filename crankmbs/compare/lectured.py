@@ -201,11 +201,12 @@ def lectured(
         difference[:, k] = pressure_at(phi[:, k])
     bodies = bodies_of(scene)
     factors = formulas.motion(phi, bodies), formulas.forces(phi, bodies)
-    return quantities_by(scene, factors, theta, difference, (omega, alpha))
+    return quantities_by(scene, bodies, factors, theta, difference, (omega, alpha))
 
 
 def quantities_by(
     scene: Scene,
+    bodies: Bodies,
     factors: tuple[Motion, RodForces],
     theta: Array,
     difference: Array,
@@ -224,7 +225,7 @@ def quantities_by(
     -------
     dict over QUANTITIES, shape (..., n, cylinders), those of the whole engine (..., n)
     """
-    (piston, forces), bodies = factors, bodies_of(scene)
+    piston, forces = factors
     omega, alpha = (part[..., None] for part in motion)
     phi, r, masses = cycle_angles(scene, theta), bodies.crank_radius, bodies.masses
     reciprocating = lecture.reciprocating_mass(

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.compare.bodies import bodies_of
+from crankmbs.compare.bodies import Bodies
 from crankmbs.mechanics.variables import EVERY
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
@@ -65,11 +65,11 @@ OBSERVABLES = {
 def cycle_angles(scene: Scene, theta: Array) -> Array:
     """Cycle angle of every cylinder at the crank angles, shape (n, cylinders) [rad]."""
     phases = np.array([cylinder.phase for cylinder in scene.cylinders], dtype=np.float64)
-    return np.asarray(theta[:, None] + phases)
+    return np.asarray(np.add.outer(phases, theta).T)
 
 
 def observed(
-    scene: Scene, variables: Mapping[str, Array], theta: Array, omega: Array, alpha: Array
+    bodies: Bodies, variables: Mapping[str, Array], phi: Array, omega: Array, alpha: Array
 ) -> dict[str, Array]:
     """The compared quantities of a run, or of `crankmbs.mechanics.reactions.reactions`.
 
@@ -82,18 +82,17 @@ def observed(
     Parameters
     ----------
     variables : by name, as in `crankmbs.result.VARIABLES`, SI units, shape (..., n, cylinders)
-    theta : shape (n,) [rad]; omega, alpha : shape (..., n) or (..., 1) [rad/s, rad/s2], the motion
-        they belong to
+    phi : cycle angles, shape (n, cylinders) [rad]; omega, alpha : shape (..., n) or (..., 1)
+        [rad/s, rad/s2], the motion they belong to
 
     Returns
     -------
     dict over QUANTITIES: shape (..., n, cylinders), those of the whole engine (..., n); "gas
     torque" is the gas force's power over omega, not finite where the crank stands still
     """
-    phi, omega, alpha = cycle_angles(scene, theta), omega[..., None], alpha[..., None]
+    omega, alpha = omega[..., None], alpha[..., None]
     sin_phi, cos_phi = np.sin(phi), np.cos(phi)
     square = omega**2
-    bodies = bodies_of(scene)
     turning = bodies.masses.crank_pin * bodies.crank_radius
     through_x = variables["crank_pin_force_x"] + turning * (cos_phi * square + sin_phi * alpha)
     through_y = variables["crank_pin_force_y"] + turning * (sin_phi * square - cos_phi * alpha)

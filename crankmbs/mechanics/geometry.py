@@ -200,8 +200,7 @@ def top_position(radius: float, rod_length: float, offset: float) -> float:
 
 def bottom_position(radius: float, rod_length: float, offset: float) -> float:
     """Piston pin position x [m] at the true bottom dead centre."""
-    shape = radius, rod_length, offset
-    return float(close_loop(dead_centres(*shape)[1], *shape).x)
+    return math.sqrt(max((rod_length - radius - offset) * (rod_length - radius + offset), 0.0))
 
 
 def throw_angles(

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.axes import axes_of, closed_loops, gears_of, gravity_vector
+from crankmbs.mechanics.axes import Gears, axes_of, closed_loops, gears_of, gravity_vector
 from crankmbs.mechanics.geometry import Loop
 from crankmbs.mechanics.inertia import crank_weight, ends_at, gas_at, moving_inertias, rod_centre
 from crankmbs.mechanics.journals import journal_rows, of_journals, of_rods, rocking_of_throws
@@ -28,10 +28,12 @@ from crankmbs.scene.scene import Scene
 __all__ = [
     "UNITS",
     "Cylinders",
+    "Place",
     "Powers",
     "balanced",
     "of_crank",
     "of_cylinders",
+    "place_of",
     "powers_of",
     "pushed",
     "rows_of",
@@ -115,6 +117,22 @@ def _along_the_crank(torque: Array) -> dict[str, Array]:
     }
 
 
+class Place(NamedTuple):
+    """What moves in the cylinders, and their loops at n crank angles, shape (cylinders, n)."""
+
+    gears: Gears
+    loop: Loop
+
+
+def place_of(scene: Scene, theta: Array) -> Place:
+    """That of a scene at crank angles of shape (n,) [rad].
+
+    >>> place_of(load_scene("v_twin"), np.zeros(3)).loop.x.shape
+    (2, 3)
+    """
+    return Place(gears_of(scene), closed_loops(scene, theta))
+
+
 class Cylinders(NamedTuple):
     """The variables of the cylinders by name, shape (cylinders, u, n), for velocities those per
     speed, shape (cylinders, 1, n) of what depends on the angle alone; what each adds to the
@@ -127,18 +145,18 @@ class Cylinders(NamedTuple):
     inertia: Array
 
 
-def of_cylinders(train: CrankTrain, theta: Array, motion: Powers) -> Cylinders:
-    """The variables of every cylinder, at crank angles of shape (n,) [rad]; balance after balance,
-    in the order in which each needs the one before."""
-    scene = train.scene
-    gears = gears_of(scene).over_motions
+def of_cylinders(scene: Scene, at: Place, pressure: Array, motion: Powers) -> Cylinders:
+    """The variables of every cylinder but those of both its ends; balance after balance, in the
+    order in which each needs the one before.
+
+    pressure : of the gas, shape (cylinders, n) [Pa]
+    """
+    gears, gas = at.gears.over_motions, pressure[:, np.newaxis]
     r, l, a = gears.radius, gears.length, gears.rod_centre
     square, alpha, one = motion
     gx, gy = axes_of(scene).gravity[..., np.newaxis]
-    loop = Loop(*(part[:, np.newaxis] for part in closed_loops(scene, theta)))
+    loop = Loop(*(part[:, np.newaxis] for part in at.loop))
     g = rod_centre(loop, r, a / l)
-    pressure = gas_at(train, theta)
-    gas = np.zeros_like(loop.x) if pressure is None else pressure[:, np.newaxis]
     sin_b, cos_b = loop.sin_beta, loop.cos_beta
 
     x_tt = loop.x_2 * square + loop.x_1 * alpha
@@ -173,8 +191,6 @@ def of_cylinders(train: CrankTrain, theta: Array, motion: Powers) -> Cylinders:
         "crank_pin_force_x": throw_x,
         "crank_pin_force_y": throw_y,
     } | _along_the_crank(torque)
-    for name, pressures in ends_at(train, theta, gas[:, 0]).items():
-        variables[name] = pressures[:, np.newaxis]
     shake_x, shake_y = -inertial_x - carried, leaning - inertial_y
     moment = -loop.x * side - gears.offset * push
     return Cylinders(variables, shake_x, shake_y, moment, moving_inertias(gears, loop, g))
@@ -237,7 +253,11 @@ def balanced(train: CrankTrain, theta: Array, motion: Powers) -> dict[str, Array
     >>> balanced(train, np.zeros(2), UNITS)["side_force"].shape
     (1, 3, 2)
     """
-    cylinders = of_cylinders(train, theta, motion)
+    at, gas = place_of(train.scene, theta), gas_at(train, theta)
+    gas = np.zeros_like(at.loop.x) if gas is None else gas
+    cylinders = of_cylinders(train.scene, at, gas, motion)
+    for name, pressures in ends_at(train, theta, gas).items():
+        cylinders.variables[name] = pressures[:, np.newaxis]
     crank = of_crank(train.scene, theta, motion, cylinders)
     of_one = {name: values[np.newaxis] for name, values in crank.items()}
     rods = cylinders.variables["crank_pin_force_x"], cylinders.variables["crank_pin_force_y"]
@@ -245,10 +265,10 @@ def balanced(train: CrankTrain, theta: Array, motion: Powers) -> dict[str, Array
     return {name: every[name] for name in rows_of(train.scene)}
 
 
-def pushed(scene: Scene, period: Period, forces: Array) -> dict[str, Array]:
+def pushed(scene: Scene, at: Place, period: Period, forces: Array) -> dict[str, Array]:
     """What forces on the pistons towards the crank add: the rods push along themselves.
 
-    forces : shape (cylinders, samples) [N]
+    at : the angles of the period; forces : shape (cylinders, samples) [N]
 
     Returns
     -------
@@ -256,11 +276,12 @@ def pushed(scene: Scene, period: Period, forces: Array) -> dict[str, Array]:
     each cylinder, as of each journal
 
     >>> from crankmbs.numerics.periodic import single
-    >>> scene = load_scene("coasting")
-    >>> pushed(scene, single(np.zeros(1)), np.ones((1, 1)))["piston_pin_force_x"]
+    >>> scene, angles = load_scene("coasting"), np.zeros(1)
+    >>> at = place_of(scene, angles)
+    >>> pushed(scene, at, single(angles), np.ones((1, 1)))["piston_pin_force_x"]
     array([[1.]])
     """
-    gears, loop = gears_of(scene), closed_loops(scene, period.angles)
+    gears, loop = at
     tangent = loop.sin_beta / loop.cos_beta
     lever = gears.radius * (loop.sin_phi + loop.cos_phi * tangent)
     across = period.times(-tangent, forces)

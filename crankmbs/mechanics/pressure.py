@@ -69,7 +69,7 @@ class PeriodicPressure:
         """Period [rad]."""
         return float(self.knots[-1] - self.knots[0])
 
-    @property
+    @cached_property
     def peak(self) -> tuple[float, float]:
         """Cycle angle [rad] and value [Pa] of the highest pressure, the first of equal ones."""
         pieces = PPoly(self.coefficients, self.knots)

@@ -20,7 +20,15 @@ from numpy.typing import ArrayLike
 
 from crankmbs.mechanics.axes import axes_of, gears_of
 from crankmbs.mechanics.friction import friction_forces
-from crankmbs.mechanics.newton_euler import UNITS, Powers, balanced, powers_of, pushed, rows_of
+from crankmbs.mechanics.newton_euler import (
+    UNITS,
+    Powers,
+    balanced,
+    place_of,
+    powers_of,
+    pushed,
+    rows_of,
+)
 from crankmbs.mechanics.pressure import pressures_at
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import EVERY
@@ -251,6 +259,7 @@ def _added(
     for name, push in pushes.items():
         forces.append(np.ascontiguousarray(push.T))
         variables[name] = forces[-1]
-    return (
-        variables | pushed(train.scene, period, sum(forces[1:], forces[0])) if forces else variables
-    )
+    if not forces:
+        return variables
+    at = place_of(train.scene, period.angles)
+    return variables | pushed(train.scene, at, period, sum(forces[1:], forces[0]))
