@@ -105,10 +105,10 @@ function cylinderAt(train, { theta, omega, alpha, shares }, number) {
 }
 
 /** What pushes a piston, over its area [Pa], with its share of the combustion. */
-export function pressureAt({ pressure, combustion }, shares, number, phi) {
-  let found = pressure.length ? valueAt(pressure[number], phi) : 0;
-  if (combustion.length) found += shares[number] * valueAt(combustion[number], phi);
-  return found;
+export function pressureAt({ pressure, firing }, shares, number, phi) {
+  const found = pressure.length ? valueAt(pressure[number], phi) : 0;
+  if (!firing.length) return found;
+  return found + shares[number] * (valueAt(firing[number], phi) - found);
 }
 
 /** A vector from a cylinder's frame in the engine's. */
