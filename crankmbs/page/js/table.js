@@ -33,12 +33,15 @@ class Table {
     const [masses, pushes] = [[], []];
     train.cylinders.forEach(({ phase }, k) => {
       const place = (n) => (n + ahead[k]) % whole;
-      const mass = (masses[heavy[k]] ??= columns(MASSES, turn, (to, n) =>
-        fillMass(to, place(n) % turn, massesAt(train, k, angles[n] + phase))));
-      const push = (pushes[like[k]] ??= columns(PUSHES, whole, (to, n) => {
+      const mass = (masses[heavy[k]] ??= columns(MASSES, turn));
+      for (let n = 0; heavy[k] === k && n < turn; n++) {
+        fillMass(mass, place(n) % turn, massesAt(train, k, angles[n] + phase));
+      }
+      const push = (pushes[like[k]] ??= columns(PUSHES, whole));
+      for (let n = 0; like[k] === k && n < whole; n++) {
         const at = place(n) % turn;
-        fillPush(to, place(n), pushAt(train, k, angles[n] + phase, mass.x[at], mass.x1[at]));
-      }));
+        fillPush(push, place(n), pushAt(train, k, angles[n] + phase, mass.x[at], mass.x1[at]));
+      }
       for (let n = 0; n < angles.length; n++) {
         const to = place(n);
         const at = to % turn;
@@ -68,11 +71,8 @@ class Table {
   }
 }
 
-/** Columns of so many rows, each filled by its number if they are. */
-function columns(names, count, fill) {
-  const found = Object.fromEntries(names.map((name) => [name, new Float64Array(count)]));
-  for (let n = 0; fill && n < count; n++) fill(found, n);
-  return found;
+function columns(names, count) {
+  return Object.fromEntries(names.map((name) => [name, new Float64Array(count)]));
 }
 
 // by name, not in a loop over names, which takes several times as long

@@ -107,7 +107,9 @@ export function crankWeight(crank, gravity, theta) {
 
 /** What the combustion adds with these shares [N m]. */
 function burnt(combustion, shares) {
-  return combustion.reduce((sum, each, k) => sum + shares[k] * each, 0);
+  let sum = 0;
+  for (let k = 0; k < combustion.length; k++) sum += shares[k] * combustion[k];
+  return sum;
 }
 
 /** First and second derivatives of the rod's centre of mass in the cycle angle [m]. */
