@@ -3,7 +3,7 @@
  * X, to the head, points up and Y to the left, so that counter-clockwise stays so. Lengths are in
  * metres times a scale.
  */
-import { bottomPosition, topPosition } from "./geometry.js";
+import { bottomPosition, topPosition, turnedBy } from "./geometry.js";
 
 const CROWN = 0.4; // of the piston's width, above its pin
 const SKIRT = 0.3;
@@ -56,11 +56,4 @@ function rimOf(radius, ratio) {
 /** The inertia, of the scene's, that a rim of this radius stands for. */
 export function inertiaOfRim(rim, radius) {
   return (rim / (RIM * radius)) ** 4;
-}
-
-/** From a cylinder's frame to the engine's. */
-export function turnedBy(bank, x, y) {
-  if (bank === 0) return [x, y];
-  const [cos, sin] = [Math.cos(bank), Math.sin(bank)];
-  return [x * cos - y * sin, x * sin + y * cos];
 }

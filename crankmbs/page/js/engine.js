@@ -34,7 +34,7 @@ export class Engine {
     this.shapes = remembering((lengths) =>
       lengths.map(([radius, length, offset]) => ({ radius, length, offset })));
     this.loops = remembering((shapes) => shapes.map((shape) => new Loop(shape)));
-    this.pressures = { fine: remembering(pressuresOf), quick: remembering(pressuresOf) };
+    this.pressures = remembering(pressuresOf);
     // a stronger load has the knots that it had
     this.marks = remembering(marksOf);
     this.edges = remembering(edgesOf);
@@ -51,10 +51,9 @@ export class Engine {
     const { crank, cylinders, levers, throws, gravity, friction, loads, fuel, period } = scene;
     const gears = this.gears(scene);
     const [{ shape, piston }] = gears;
-    const pressures = quick ? this.pressures.quick : this.pressures.fine;
     const share = piston.crank_end_share;
     const { pressure, firing, crank_end } =
-      pressures(scene.gas, shape, share, quick ? SEEN : DIAGRAM);
+      this.pressures(scene.gas, shape, share, quick ? SEEN : DIAGRAM);
     return {
       gears, shape, piston, crank, cylinders, levers, throws, gravity, friction, loads, fuel,
       period, pressure, firing, crank_end, applies: scene.force.length > 0,

@@ -1,11 +1,12 @@
 /** The mechanism, to scale: crank, rods, pistons, cylinders and flywheel, the forces on one body,
  * and a ring that turns at the mean speed. */
-import { proportions, turnedBy } from "./drawing.js";
+import { proportions } from "./drawing.js";
 import { BODIES, forcesOn } from "./forces.js";
 import { general, readable, roundBelow } from "./format.js";
+import { turnedBy } from "./geometry.js";
 import { LETTER, boxBeside, looksOf, namesBeside, whichOf } from "./labels.js";
 import { arrowOf, rodOf, webOf } from "./outlines.js";
-import { Pen, add, set, watched } from "./svg.js";
+import { Pen, add, set, turn, watched } from "./svg.js";
 
 const REACH = 1.2; // of the crank radius: the longest arrow
 const LEAD = (14 * Math.PI) / 180; // the ring's magnified lead, at most
@@ -178,7 +179,7 @@ export class Stage {
     const half = scale(0.5 * sizes.width);
     const [head, low] = [-scale(sizes.head), -scale(sizes.low)];
     Object.assign(part, { head, middle });
-    set(fixed, { transform: `rotate(${(-bank * 180) / Math.PI}) translate(${middle} 0)` });
+    set(fixed, { transform: `${turn(bank)} translate(${middle} 0)` });
     if (wall) {
       set(gas, { x: -half, width: 2 * half, y: head });
       const thick = scale(0.06 * sizes.width);
@@ -202,15 +203,11 @@ export class Stage {
     const v = this.cycle.at(theta);
     this.parts.forEach((_, k) => this.poseCylinder(k, theta, v.cylinders[k]));
     const rim = this.sizes.rim * UNITS;
-    const turn = (angle) => `rotate(${(-angle * 180) / Math.PI})`;
     const notch = 0.12 * this.sizes.r * UNITS;
-    set(this.mark, {
-      d: `M0 ${-rim}l${-notch} ${2 * notch}h${2 * notch}Z`,
-      transform: turn(theta),
-    });
-    this.poseRing(theta, turn);
+    const d = `M0 ${-rim}l${-notch} ${2 * notch}h${2 * notch}Z`;
+    set(this.mark, { d, transform: turn(theta) });
+    this.poseRing(theta);
     this.poseArrows(v);
-    return v;
   }
 
   poseCylinder(k, theta, at) {
@@ -230,14 +227,14 @@ export class Stage {
     const angle = theta + phase + bank;
     const [cx, cy] = onScreen(turnedBy(angle, r, 0));
     const [px, py] = onScreen(turnedBy(bank, x, -middle));
-    set(crank, { transform: `rotate(${(-angle * 180) / Math.PI})` });
-    const lean = Math.atan2(px - cx, cy - py);
-    set(rod, { transform: `translate(${px} ${py}) rotate(${(lean * 180) / Math.PI})` });
+    set(crank, { transform: turn(angle) });
+    const lean = Math.atan2(cx - px, cy - py);
+    set(rod, { transform: `translate(${px} ${py}) ${turn(lean)}` });
     set(pin, { cx, cy });
   }
 
   /** The ring stands where an evenly turning crank would, its lag or lead magnified. */
-  poseRing(theta, turn) {
+  poseRing(theta) {
     if (!this.magnified) return;
     const lead = this.magnified * this.cycle.leadAt(theta);
     set(this.turning, { transform: turn(theta - lead) });
