@@ -64,13 +64,13 @@ function columns(samples) {
   return found;
 }
 
-/** The pressures of a scene in a machine of another shape, and what combustion adds, as lists. */
+/** The pressures of a scene in a machine of another shape, without and with combustion, as lists. */
 export function carried(_, { scene, shape }) {
   const { crank_end_share: share } = scene.piston;
-  const { pressure, combustion, crank_end } = pressuresOf(scene.gas, shape, share);
+  const { pressure, firing, crank_end } = pressuresOf(scene.gas, shape, share);
   const plain = ({ knots, coefficients }) => [Array.from(knots), Array.from(coefficients)];
-  const [made, more, below] = [pressure, combustion, crank_end].map((each) => each.map(plain));
-  return { pressure: made, combustion: more, crank_end: below };
+  const [made, more, below] = [pressure, firing, crank_end].map((each) => each.map(plain));
+  return { pressure: made, firing: more, crank_end: below };
 }
 
 /** A run as the page replays it, at times [s]: the time, angle and speed that are shown there, the

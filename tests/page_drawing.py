@@ -19,7 +19,7 @@ def drawing_holds(said, scene, data, k):
             pin = frame(cylinder.bank, position[n], gear.piston.offset)
             ok = (
                 at(pose["pin"], throw)
-                and at(pose["small"], pin)
+                and leads(pose["rod"], pin, throw)
                 and same(numbers(pose["piston"]["transform"]), [0.0, -1e3 * position[n]])
                 and turns(pose["web"], theta + cylinder.phase + cylinder.bank)
                 and turns(pose["mark"], theta)
@@ -47,6 +47,16 @@ def truth_is(case, scene):
 
 def at(circle, place):
     return same([float(circle["cx"]), float(circle["cy"])], [-1e3 * place.imag, -1e3 * place.real])
+
+
+def leads(rod, small, big):
+    """A rod's group stands at its small end and turns what points down in it to its big end."""
+    place, turn = rod["transform"].split(") ")
+    x, y = numbers(place)
+    (degrees,) = numbers(turn)
+    at_small = same([x, y], [-1e3 * small.imag, -1e3 * small.real])
+    lean = np.angle(-(big - small))  # counter-clockwise, as X points up
+    return at_small and abs(np.exp(-1j * math.radians(degrees)) - np.exp(1j * lean)) < 1e-9
 
 
 def numbers(text):

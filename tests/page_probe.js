@@ -25,7 +25,7 @@
     stage.show(shown, { k, body, ratio, heavy: true });
     stage.pose(shown.angles[n]);
     return {
-      pin: one(".chosen [data-grip=pin]"), small: one(".chosen .eye:not(.grip)"),
+      pin: one(".chosen [data-grip=pin]"), rod: one(".chosen .rod"),
       piston: one(".chosen .piston"), web: one(".chosen .web"), mark: one(".mark"),
       ring: one(".ring g"), lead: one("path.lead"), says: stage.leadInWords(shown.angles[n]),
       arrows: all(".arrows path"), names: all(".arrows text"), bar: all(".scale *"),

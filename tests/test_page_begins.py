@@ -84,6 +84,18 @@ def test_names_of_forces_stand_beside_a_cylinder_that_leans(browser, tmp_path, n
                 assert right <= stage[1] + 1.0
 
 
+def test_names_of_a_crank_s_forces_stand_on_the_side_that_has_room(browser, tmp_path):
+    with opened(browser, tmp_path, "v_twin", "#forces=crank", size=PHONE) as visited:
+        for _ in on_screens(visited.settle()):
+            walls, names = (
+                visited.page.evaluate(ENDS, what)
+                for what in ("#stage .cylinder .wall", "#stage .arrows text")
+            )
+            assert len(names) >= 3
+            low, high = min(begin for begin, _ in walls), max(end for _, end in walls)
+            assert all(right <= low + 2.0 or left >= high - 2.0 for left, right in names)
+
+
 def test_what_changes_comes_first_among_the_numbers(browser, tmp_path):
     for name, second in (("propeller", "fluctuation"), ("grega_lecture", "side force, peak")):
         with opened(browser, tmp_path, name, size=PHONE, everything=False) as visited:

@@ -68,16 +68,24 @@ def assert_carried(page, before, scene):
         "offset": scene.piston.offset,
     }
     found = page.ask("carried", scene=exported(before), shape=shape)
-    for name in ("pressure", "combustion", "crank_end"):
-        expected = getattr(train, name) or ()
-        assert len(found[name]) == len(expected)
-        for (knots, coefficients), one in zip(found[name], expected, strict=True):
-            phi = 0.5 * (one.knots[1:] + one.knots[:-1])
-            cubics = np.reshape(coefficients, (4, -1))
-            size = np.abs(train.pressure[0].coefficients[3]).max()
-            np.testing.assert_allclose(knots, one.knots, rtol=0.0, atol=1e-11)
-            moved = type(one)(np.array(knots), cubics)
-            np.testing.assert_allclose(moved(phi), one(phi), rtol=0.0, atol=1e-11 * size)
+    size = np.abs(train.pressure[0].coefficients[3]).max()
+    expected = {
+        "pressure": train.pressure,
+        "firing": tuple(
+            replace(one, coefficients=one.coefficients + more.coefficients)
+            for one, more in zip(train.pressure, train.combustion or (), strict=False)
+        ),
+        "crank_end": train.crank_end or (),
+    }
+    for name, cycles in expected.items():
+        assert len(found[name]) == len(cycles)
+        for (knots, coefficients), one in zip(found[name], cycles, strict=True):
+            if train.combustion is None:
+                np.testing.assert_allclose(knots, one.knots, rtol=0.0, atol=1e-11)
+            moved = type(one)(np.array(knots), np.reshape(coefficients, (4, -1)))
+            for part in (0.2, 0.5, 0.8):
+                phi = one.knots[:-1] + part * np.diff(one.knots)
+                np.testing.assert_allclose(moved(phi), one(phi), rtol=0.0, atol=1e-11 * size)
 
 
 @pytest.mark.parametrize("change", [{}, {"length": 1.08, "offset": 0.004}], ids=["", "geometry"])

@@ -44,9 +44,7 @@ def _bearing(scene: Scene) -> Section:
         title="A point is a force",
         before="Drag the crank and watch the dot. The line from the middle to the dot is the force "
         "of the main bearing on the crank, X up along the engine and Y to the left, as in the "
-        "mechanism beside it. The other curve is its length over the crank angle. The force is "
-        'greatest, <output data-say="bearing.peak"></output>, at a crank angle '
-        'of <output data-say="bearing.angle"></output>.',
+        "mechanism beside it. The other curve is its length over the crank angle.",
         figure=Figure(
             name="bearing",
             caption="The force of the main bearing on the crank over one cycle, as a polar and by "
@@ -55,8 +53,10 @@ def _bearing(scene: Scene) -> Section:
             beside=True,
             forces="crank",
         ),
-        after="The small dots are ten degrees apart: where they lie far from each other, the force "
-        "changes quickly; where they crowd, it stays.",
+        after='The force is greatest, <output data-say="bearing.peak"></output>, at a crank angle '
+        'of <output data-say="bearing.angle"></output>. The small dots are ten degrees apart: '
+        "where they lie far from each other, the force changes quickly; where they crowd, it "
+        "stays.",
         formulas=(
             Formula(
                 r"F = \sqrt{F_X^2+F_Y^2},\quad \tan\gamma = \frac{F_Y}{F_X}",

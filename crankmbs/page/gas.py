@@ -25,9 +25,10 @@ _DIAGRAM = (
 
 
 def exported_gas(scene: Scene, train: CrankTrain) -> dict[str, Any] | None:
-    """What pushes every piston over its area, what combustion adds, and the crank ends, as cycles;
-    the sources of the pressures, and by number which is that of which cylinder, `below` of the
-    crank ends; the shape that they belong to, None where cylinders are unlike. None without gas.
+    """What pushes every piston over its area, with fuel without combustion and `firing`, and the
+    crank ends, as cycles; the sources of the pressures, and by number which is that of which
+    cylinder, `below` of the crank ends; the shape that they belong to, None where cylinders are
+    unlike. None without gas.
 
     >>> scene = load_scene("v_twin")
     >>> exported_gas(scene, crank_train(scene))["fired"]
@@ -45,7 +46,7 @@ def exported_gas(scene: Scene, train: CrankTrain) -> dict[str, Any] | None:
     return {
         "shape": None if scene.unlike else _shape(scene),
         "pressure": [_cycle(each) for each in train.pressure],
-        "combustion": [_cycle(each) for each in train.combustion or ()],
+        "firing": list(map(_sum, train.pressure, train.combustion or ())),
         "crank_end": [_cycle(each) for each in train.crank_end or ()],
         "sources": sources.exported,
         "fired": fired,
@@ -62,6 +63,11 @@ def _shape(scene: Scene) -> dict[str, float]:
         "length": scene.rod.length,
         "offset": scene.piston.offset,
     }
+
+
+def _sum(one: PeriodicPressure, other: PeriodicPressure) -> dict[str, Array]:
+    """The sum of two cycles with the same knots."""
+    return {**_cycle(one), "coefficients": (one.coefficients + other.coefficients).ravel()}
 
 
 def _cycle(pressure: PeriodicPressure) -> dict[str, Array]:

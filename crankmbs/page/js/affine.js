@@ -1,138 +1,176 @@
-/** A period under loads of c0 + c2 omega^2: dE/dtheta = push + rate E in every cell.
+/** Cells under loads of c0 + c2 omega^2: dE/dtheta = push + rate E.
  *
  * Of the energy E at a cell's begin it makes gain E + shift at each node, and E + (growth E + rise)
- * at its end. None of this depends on E: the maps of the cells are composed to that of the period,
- * and once its fixed point is known the motion is one sweep without any solving.
+ * at its end. None of this depends on E: a cell that is met again needs no solving, and the maps of
+ * cells are composed to that of a period, of which the motion is one sweep from its fixed point.
  */
 import { Sum, eliminate } from "./arrays.js";
+import { SLOW } from "./cell.js";
+import { isAffine } from "./loads.js";
 import { Path } from "./path.js";
 import { eachNode, fillSystem } from "./rule.js";
 import { givenAt } from "./tables.js";
 
-/** The maps of the cells of a period, in the order in which they are passed.
+/** Whether every cell is affine under a branch of the loads, at whatever speed in this sense. */
+export function areAffine({ gears }, branch, sense) {
+  const ends = (limit) => sense * limit > 0 && Number.isFinite(limit);
+  const drags = gears.some(({ drag }) => drag > 0);
+  return isAffine(branch) && !drags && !ends(branch.low) && !ends(branch.high);
+}
+
+/** The cells of a period, by their numbers, each solved when it is first met. */
+export class AffineCells {
+  /** motion : { train, grid, sense, phases }; shares : of the combustion */
+  constructor({ train, grid, sense, phases }, branch, shares) {
+    Object.assign(this, { train, grid, branch, state: { shares, phases, sense } });
+    const { edges, rule } = grid;
+    const [count, s] = [edges.length - 1, rule.nodes.length];
+    for (const name of ["inertia", "push", "rate", "gain", "shift"]) {
+      this[name] = new Float64Array(count * s);
+    }
+    this.growth = new Float64Array(count).fill(NaN); // until it is solved
+    this.rise = new Float64Array(count);
+    [this.system, this.both] = [new Float64Array(s * s), new Float64Array(2 * s)];
+    [this.slope, this.least, this.most] = [0, Infinity, 0];
+  }
+
+  /** Signed width of a cell [rad]. */
+  width(number) {
+    const { grid: { edges }, state: { sense } } = this;
+    return sense * (edges[number + 1] - edges[number]);
+  }
+
+  /** Inertia, push and rate at the nodes, in the sense of rotation, and the maps of a cell. */
+  solve(number) {
+    const { train, grid, branch, state, inertia, push, rate, gain, shift, system, both } = this;
+    const { matrix, weights } = grid.rule;
+    const s = weights.length;
+    const first = number * s;
+    const width = this.width(number);
+    eachNode(grid, number, state.sense, (of, j) => {
+      inertia[first + j] = train.crank.inertia + of.inertia;
+      push[first + j] = givenAt(train, of, state, 0) + branch.c0;
+      rate[first + j] = (2 * branch.c2) / inertia[first + j];
+    });
+    fillSystem(system, grid.rule, width, rate, first);
+    for (let j = 0; j < s; j++) {
+      both[2 * j] = 1;
+      both[2 * j + 1] = 0;
+      for (let i = 0; i < s; i++) both[2 * j + 1] += width * matrix[j * s + i] * push[first + i];
+    }
+    eliminate(system, both, s, 2);
+    let [growth, rise] = [0, 0];
+    for (let j = 0; j < s; j++) {
+      const at = first + j;
+      gain[at] = both[2 * j];
+      shift[at] = both[2 * j + 1];
+      growth += width * weights[j] * rate[at] * gain[at];
+      rise += width * weights[j] * (push[at] + rate[at] * shift[at]);
+    }
+    this.growth[number] = growth;
+    this.rise[number] = rise;
+  }
+
+  /** Pass a cell from an energy [J] on: torque and slowness at its nodes are written from number
+   * `to` on. The time that it takes [s], NaN where the energy is gone; `slope` is how that changes
+   * with the energy, `least` and `most` that at all nodes so far. */
+  pass(number, energy, torque, slowness, to) {
+    if (Number.isNaN(this.growth[number])) this.solve(number);
+    const { inertia, push, rate, gain, shift, grid: { rule: { weights } } } = this;
+    let [spent, slope, least, most] = [0, 0, this.least, this.most];
+    for (let j = 0, k = number * weights.length; j < weights.length; j++, k++) {
+      const kinetic = gain[k] * energy + shift[k];
+      const part = 0.5 / kinetic;
+      const slow = Math.sqrt(inertia[k] * part); // NaN where it is gone
+      torque[to + j] = push[k] + rate[k] * kinetic;
+      slowness[to + j] = slow;
+      spent += weights[j] * slow;
+      slope -= weights[j] * slow * gain[k] * part;
+      if (kinetic < least) least = kinetic;
+      if (kinetic > most) most = kinetic;
+    }
+    const width = Math.abs(this.width(number));
+    this.slope = width * slope;
+    this.least = least;
+    this.most = most;
+    return width * spent;
+  }
+
+  /** Whether at a node of a cell the energy would be gone within half a degree. */
+  isSlow(number, energy) {
+    const { push, rate, gain, shift, branch: { c0 }, grid: { rule: { nodes } } } = this;
+    for (let j = 0, k = number * nodes.length; j < nodes.length; j++, k++) {
+      const kinetic = gain[k] * energy + shift[k];
+      const load = Math.abs(c0 + rate[k] * kinetic);
+      if (!(kinetic > SLOW * (Math.abs(push[k] - c0) + load))) return true;
+    }
+    return false;
+  }
+}
+
+/** A period of such cells, in the order in which they are passed.
  *
  * section : { train, grid, theta, sense, phases, first }, first being the number of the first cell
  */
 export class AffinePeriod {
   constructor(section, branch) {
-    Object.assign(this, { section, branch });
-    const { edges, rule } = section.grid;
-    this.stages = rule.nodes.length;
-    this.count = edges.length - 1;
-    for (const name of ["inertia", "push", "rate", "gain", "shift"]) {
-      this[name] = new Float64Array(this.count * this.stages);
-    }
-    for (const name of ["number", "growth", "rise"]) this[name] = new Float64Array(this.count);
-    this.fill();
-    this.solve();
+    this.section = section;
+    this.cells = new AffineCells(section, branch, new Float64Array(0));
+    const count = section.grid.edges.length - 1;
+    this.numbers = Array.from({ length: count }, (_, c) =>
+      (section.first + count + (section.sense > 0 ? c : -1 - c)) % count);
+    for (const number of this.numbers) this.cells.solve(number);
     this.compose();
   }
 
-  /** Inertia, push and rate at the nodes, in the sense of rotation. */
-  fill() {
-    const { section, branch, stages: s, count } = this;
-    const { train, grid, sense, phases, first } = section;
-    const state = { shares: [], phases, sense };
-    for (let c = 0; c < count; c++) {
-      const number = (first + count + (sense > 0 ? c : -1 - c)) % count;
-      this.number[c] = number;
-      eachNode(grid, number, sense, (of, j) => {
-        const to = c * s + j;
-        this.inertia[to] = train.crank.inertia + of.inertia;
-        this.push[to] = givenAt(train, of, state, 0) + branch.c0;
-        this.rate[to] = (2 * branch.c2) / this.inertia[to];
-      });
-    }
-  }
-
-  /** Gain and shift at the nodes, growth and rise of every cell. */
-  solve() {
-    const { section, stages: s, count, push, rate, gain, shift } = this;
-    const { matrix, weights } = section.grid.rule;
-    const system = new Float64Array(s * s);
-    const both = new Float64Array(2 * s);
-    for (let c = 0; c < count; c++) {
-      const width = this.width(c);
-      fillSystem(system, section.grid.rule, width, rate, c * s);
-      for (let j = 0; j < s; j++) {
-        both[2 * j] = 1;
-        both[2 * j + 1] = 0;
-        for (let i = 0; i < s; i++) both[2 * j + 1] += width * matrix[j * s + i] * push[c * s + i];
-      }
-      eliminate(system, both, s, 2);
-      for (let j = 0; j < s; j++) {
-        const at = c * s + j;
-        gain[at] = both[2 * j];
-        shift[at] = both[2 * j + 1];
-        this.growth[c] += width * weights[j] * rate[at] * gain[at];
-        this.rise[c] += width * weights[j] * (push[at] + rate[at] * shift[at]);
-      }
-    }
-  }
-
   /** Crank angle [rad] at which a cell begins; no sum of widths, which would round. */
-  from(c) {
-    const { grid, sense, theta, first } = this.section;
-    const { edges } = grid;
-    const number = this.number[c];
+  from(number) {
+    const { grid: { edges }, sense, theta, first } = this.section;
     const ahead = sense > 0 ? edges[number] - edges[first] : edges[first] - edges[number + 1];
-    return theta + sense * (ahead < 0 ? ahead + edges[this.count] : ahead);
-  }
-
-  /** Signed width of a cell [rad]. */
-  width(c) {
-    const { edges } = this.section.grid;
-    return this.section.sense * (edges[this.number[c] + 1] - edges[this.number[c]]);
+    return theta + sense * (ahead < 0 ? ahead + edges[edges.length - 1] : ahead);
   }
 
   /** The map of the whole period, { growth, rise }: E becomes E + (growth E + rise). */
   compose() {
-    const after = new Float64Array(this.count);
+    const { numbers, cells } = this;
+    const after = new Float64Array(numbers.length);
     let growth = 0;
-    this.growth.forEach((own, c) => {
+    for (const number of numbers) {
+      const own = cells.growth[number];
       growth += own + growth * own;
-      after[c] = growth;
-    });
+      after[number] = growth;
+    }
     // the cells' rises nearly cancel in a steady motion: each times what the rest makes of it
     const total = new Sum();
-    this.rise.forEach((own, c) => total.add(own * ((1 + growth) / (1 + after[c]))));
+    for (const number of numbers) {
+      total.add(cells.rise[number] * ((1 + growth) / (1 + after[number])));
+    }
     this.whole = { growth, rise: total.value };
   }
 
   /** The motion that begins with an energy [J]: its path, duration [s], least and greatest energy,
    * and how the duration changes with the energy that it begins with. */
   sweep(energy) {
-    const { section, branch, stages: s, push, rate, gain, shift, inertia } = this;
-    const { grid, sense, phases } = section;
-    const { weights } = grid.rule;
-    const torque = new Float64Array(push.length);
-    const slowness = new Float64Array(push.length);
+    const { section: { grid, sense, phases }, cells, numbers } = this;
+    const { branch, state: { shares } } = cells;
+    const { length } = grid.nodes;
+    const [torque, slowness] = [new Float64Array(length), new Float64Array(length)];
     const path = new Path(grid.rule);
-    const found = { path, least: Infinity, most: 0, slope: 0 };
-    const shares = new Float64Array(0);
     const [at, time] = [new Sum(energy), new Sum()];
-    let grown = 1;
-    for (let c = 0; c < this.count; c++) {
-      const width = this.width(c);
-      let spent = 0;
-      for (let k = c * s; k < (c + 1) * s; k++) {
-        const kinetic = gain[k] * at.value + shift[k];
-        torque[k] = push[k] + rate[k] * kinetic;
-        slowness[k] = kinetic > 0 ? Math.sqrt((0.5 * inertia[k]) / kinetic) : NaN;
-        const step = Math.abs(width) * weights[k - c * s] * slowness[k];
-        spent += step;
-        found.slope -= (0.5 * step * gain[k] * grown) / kinetic;
-        found.least = Math.min(found.least, kinetic);
-        found.most = Math.max(found.most, kinetic);
-      }
+    let [grown, slope] = [1, 0];
+    [cells.least, cells.most] = [Infinity, 0];
+    for (const number of numbers) {
+      const [begin, first] = [at.value, number * grid.rule.nodes.length];
       path.add({
-        from: this.from(c), width, energy: at.value, time: time.value, sense,
-        branch, phases, shares, number: this.number[c], torque, slowness, first: c * s,
+        from: this.from(number), width: cells.width(number), energy: begin, time: time.value, sense,
+        branch, phases, shares, number, torque, slowness, first,
       });
-      at.add(this.growth[c] * at.value + this.rise[c]);
-      time.add(spent);
-      grown *= 1 + this.growth[c];
+      time.add(cells.pass(number, begin, torque, slowness, first));
+      at.add(cells.growth[number] * begin + cells.rise[number]);
+      slope += cells.slope * grown;
+      grown *= 1 + cells.growth[number];
     }
-    return { ...found, time: time.value };
+    const { least, most } = cells;
+    return { path, time: time.value, least, most, slope };
   }
 }

@@ -1,6 +1,6 @@
 /** Gauss collocation in one cell of the crank angle: Newton's method on energies at its nodes. */
 import { eliminate } from "./arrays.js";
-import { isAffine, torqueOf } from "./loads.js";
+import { torqueOf } from "./loads.js";
 import { eachNode, fillSystem, integralTo } from "./rule.js";
 import { givenAt, movingAt } from "./tables.js";
 
@@ -20,47 +20,12 @@ export class Stepper {
     }
     this.right = new Float64Array(2 * s); // of the energies, and of a difference of them
     this.system = new Float64Array(s * s);
-    this.kept = new Map(); // of each shares: branches and maps by the number of the cell
-    this.map = null; // of the cells, if that of this cell was kept
-    this.first = 0; // number of its first node in there
-    this.affine = false; // whether its energies are linear in that at its begin
     this.work = this.spent = 0;
   }
 
-  /** Take a whole cell of the grid, as it was kept if it was solved before. */
+  /** Take a whole cell of the grid. */
   take(motion, number) {
-    const { branch, firing: { shares }, grid, sense } = motion;
-    const kept = this.kept.get(shares);
-    this.map = kept?.branches[number] === branch ? kept.map : null;
-    if (!this.map) {
-      eachNode(grid, number, sense, (of, j) => this.load(motion, of, j));
-      return;
-    }
-    this.first = 4 * number * this.drag.length;
-    for (let j = 0, k = this.first; j < this.drag.length; j++, k += 4) {
-      this.inertia[j] = this.map[k];
-      this.given[j] = this.map[k + 1];
-      this.right[2 * j + 1] = this.map[k + 2];
-      this.drag[j] = 0;
-    }
-  }
-
-  /** Keep of a solved cell, with inertia and torque, by what its energies grow and are shifted, if
-   * they are linear in that at its begin: a run of many cycles meets it again. */
-  keep({ branch, firing: { shares }, energy: begin, grid: { nodes } }, number) {
-    if (!this.affine || this.map) return;
-    if (!this.kept.has(shares)) {
-      this.kept.set(shares, { branches: [], map: new Float64Array(4 * nodes.length) });
-    }
-    const { branches, map } = this.kept.get(shares);
-    branches[number] = branch;
-    for (let j = 0, k = 4 * number * this.energy.length; j < this.energy.length; j++, k += 4) {
-      const gain = this.right[2 * j + 1];
-      map[k] = this.inertia[j];
-      map[k + 1] = this.given[j];
-      map[k + 2] = gain;
-      map[k + 3] = this.energy[j] - gain * begin;
-    }
+    eachNode(motion.grid, number, motion.sense, (of, j) => this.load(motion, of, j));
   }
 
   /** Take what the crank train is at node j of those that are passed, as `movingAt` gives it. */
@@ -73,18 +38,14 @@ export class Stepper {
   /** The same of a cell from where a motion is to an angle. */
   tabulate(motion, target) {
     const { train, theta } = motion;
-    this.map = null;
     this.rule.nodes.forEach((node, j) =>
       this.load(motion, movingAt(train, theta + (target - theta) * node), j));
   }
 
   /** Solve the cell of a signed width from a motion's state on; whether that converges. */
   solve({ energy: begin, time, sense, branch }, width) {
-    const { rule, energy, slowness, torque, map, first } = this;
-    if (!map && !this.iterate(begin, time, sense, branch, width)) return false;
-    for (let j = 0; map && j < energy.length; j++) {
-      energy[j] = map[first + 4 * j + 2] * begin + map[first + 4 * j + 3];
-    }
+    const { rule, energy, slowness, torque } = this;
+    if (!this.iterate(begin, time, sense, branch, width)) return false;
     this.evaluate(branch, time, sense, width);
     this.work = this.spent = 0;
     for (let j = 0; j < energy.length; j++) {
@@ -96,7 +57,7 @@ export class Stepper {
 
   /** Newton's method on the energies; whether it converges. */
   iterate(begin, time, sense, branch, width) {
-    const { rule, given, inertia, energy, drag } = this;
+    const { rule, given, inertia, energy } = this;
     const s = given.length;
     const first = sense * Math.sqrt((2 * begin) / inertia[0]);
     const load = torqueOf(branch, time, first);
@@ -104,16 +65,15 @@ export class Stepper {
       energy[j] = begin;
       for (let i = 0; i < s; i++) energy[j] += width * rule.matrix[j * s + i] * (given[i] + load);
     }
-    this.affine = isAffine(branch) && drag.every((each) => each === 0); // one step is exact
     let change = Infinity;
     for (let n = 0; n < NEWTON; n++) {
       const before = change;
       this.evaluate(branch, time, sense, width);
       change = this.correct(begin, width);
       if (!(change < Infinity)) return false;
-      if (this.affine || change <= SETTLED || (change < GOOD && change > 0.5 * before)) break;
+      if (change <= SETTLED || (change < GOOD && change > 0.5 * before)) break;
     }
-    return this.affine || change < GOOD;
+    return change < GOOD;
   }
 
   /** Slowness, torque and its rate of change with the energy, at the energies of the nodes. */
@@ -156,14 +116,17 @@ export class Stepper {
     return change;
   }
 
-  /** By what part a small difference of the energy grows in the solved cell. */
-  growth(width) {
+  /** Write torque and slowness of the solved cell from number `first` on; what it gains and takes,
+   * and by what part a small difference of the energy grows in it. */
+  passed(width, { torque, slowness, first }) {
     const { rule, rate, right } = this;
-    let grown = 0;
+    torque.set(this.torque, first);
+    slowness.set(this.slowness, first);
+    let growth = 0;
     for (let j = 0; j < rate.length; j++) {
-      grown += width * rule.weights[j] * rate[j] * right[2 * j + 1];
+      growth += width * rule.weights[j] * rate[j] * right[2 * j + 1];
     }
-    return grown;
+    return { gained: width * this.work, spent: Math.abs(width) * this.spent, growth };
   }
 
   /** Whether the energy would be gone within half a degree. */

@@ -3,7 +3,7 @@
  * X, to the head, points up and Y to the left, so that counter-clockwise stays so. Lengths are in
  * metres times a scale.
  */
-import { bottomPosition, topPosition } from "./geometry.js";
+import { bottomPosition, topPosition, turnedBy } from "./geometry.js";
 
 const CROWN = 0.4; // of the piston's width, above its pin
 const SKIRT = 0.3;
@@ -21,13 +21,14 @@ export function proportions(train, ratio, compression) {
   const ends = train.cylinders.flatMap(({ bank }, k) => endsOf(each[k], bank));
   const edge = ring + 0.15 * r;
   const far = Math.max(edge, ...ends.map(([y]) => Math.abs(y)));
-  const high = Math.max(...ends.map(([, x]) => x), edge);
+  const step = 0.1 * r; // it is not drawn anew to another scale with every little change
+  const high = step * Math.ceil(Math.max(...ends.map(([, x]) => x), edge) / step);
   const bounds = { left: -far, top: -high, width: 2 * far, height: high + edge };
   return { each, r, rim: rimOf(r, ratio), ring, bounds };
 }
 
 function cylinderOf({ shape, piston }, compression) {
-  const { radius: r, offset } = shape;
+  const { radius: r, length, offset } = shape;
   const width = piston.area ? Math.sqrt((4 * piston.area) / Math.PI) : 1.6 * r;
   const top = topPosition(shape);
   const bottom = bottomPosition(shape);
@@ -35,7 +36,8 @@ function cylinderOf({ shape, piston }, compression) {
   const head = top + CROWN * width + clearance;
   const low = bottom - SKIRT * width;
   const above = piston.area ? ROOM * r : 0; // for the arrow of the gas
-  return { r, offset, width, head, low, above, crown: CROWN * width, skirt: SKIRT * width };
+  const [crown, skirt] = [CROWN * width, SKIRT * width];
+  return { r, length, offset, width, head, low, above, crown, skirt };
 }
 
 /** How far a cylinder reaches, [Y, X] of its corners and above its head. */
@@ -54,11 +56,4 @@ function rimOf(radius, ratio) {
 /** The inertia, of the scene's, that a rim of this radius stands for. */
 export function inertiaOfRim(rim, radius) {
   return (rim / (RIM * radius)) ** 4;
-}
-
-/** From a cylinder's frame to the engine's. */
-export function turnedBy(bank, x, y) {
-  if (bank === 0) return [x, y];
-  const [cos, sin] = [Math.cos(bank), Math.sin(bank)];
-  return [x * cos - y * sin, x * sin + y * cos];
 }

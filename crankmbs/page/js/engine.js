@@ -34,7 +34,7 @@ export class Engine {
     this.shapes = remembering((lengths) =>
       lengths.map(([radius, length, offset]) => ({ radius, length, offset })));
     this.loops = remembering((shapes) => shapes.map((shape) => new Loop(shape)));
-    this.pressures = { fine: remembering(pressuresOf), quick: remembering(pressuresOf) };
+    this.pressures = remembering(pressuresOf);
     // a stronger load has the knots that it had
     this.marks = remembering(marksOf);
     this.edges = remembering(edgesOf);
@@ -51,13 +51,12 @@ export class Engine {
     const { crank, cylinders, levers, throws, gravity, friction, loads, fuel, period } = scene;
     const gears = this.gears(scene);
     const [{ shape, piston }] = gears;
-    const pressures = quick ? this.pressures.quick : this.pressures.fine;
     const share = piston.crank_end_share;
-    const { pressure, combustion, crank_end } =
-      pressures(scene.gas, shape, share, quick ? SEEN : DIAGRAM);
+    const { pressure, firing, crank_end } =
+      this.pressures(scene.gas, shape, share, quick ? SEEN : DIAGRAM);
     return {
       gears, shape, piston, crank, cylinders, levers, throws, gravity, friction, loads, fuel,
-      period, pressure, combustion, crank_end, applies: scene.force.length > 0,
+      period, pressure, firing, crank_end, applies: scene.force.length > 0,
     };
   }
 
@@ -85,7 +84,8 @@ export class Engine {
     let edges = this.edgesFor(train, scene.grid_period, quick);
     if (scene.motion !== null) return new Prescribed(train, scene.motion, edges, scene.run);
     for (let round = 0; ; round++) {
-      const motion = this.pass(scene, train, this.grid(train, edges, stages, this.nodes), warm);
+      const grid = this.grid(train, edges, stages, this.nodes);
+      const motion = this.pass(scene, train, grid, warm);
       if (quick || round >= ROUNDS || edges.length > MOST_CELLS) return motion;
       if (motion.ending !== "complete") return motion;
       const finer = this.grid(train, edges, stages + 2, this.finer);
@@ -96,17 +96,18 @@ export class Engine {
   }
 
   edgesFor(train, period, quick) {
-    const { gears, cylinders, pressure, combustion, loads, fuel } = train;
+    const { gears, cylinders, pressure, firing, loads, fuel } = train;
     const shapes = gears.map(({ shape }) => shape);
     const tables = loads.map((load) => load.over_angle).filter((cycle) => cycle !== null);
     const decisions = decisionAngles(fuel, cylinders, train.period);
     const knots = (quick ? strongOf(tables) : tables).map((cycle) => cycle.knots);
     const marks = this.marks(knots, decisions, train.period, period);
-    const bends = this.bends(train.friction, shapes, cylinders, pressure, combustion, period);
+    const cycles = [...pressure, ...firing];
+    const cut = quick ? this.strong(cycles) : cycles;
+    const bends = this.bends(train.friction, shapes, cylinders, cycles, period);
     const applied = gears.map((gear) => gear.applied);
     const kinks = this.kinks(applied, shapes, cylinders, period, quick);
-    const cycles = quick ? this.strong([...pressure, ...combustion]) : pressure;
-    return this.edges(shapes, cylinders, cycles, [...marks, bends, kinks], period);
+    return this.edges(shapes, cylinders, cut, [...marks, bends, kinks], period);
   }
 
   grid(train, edges, stages, maker) {
@@ -145,7 +146,7 @@ function marksOf(knots, decisions, own, period) {
 class Free {
   constructor(train, grid, travel) {
     Object.assign(this, { train, grid, path: travel.path, ending: travel.ending });
-    this.from = travel.path.cells.length ? travel.path.cells[0].from : travel.theta;
+    this.from = travel.start.angle;
     this.to = travel.theta;
   }
 

@@ -1,19 +1,13 @@
 /** A figure of a lesson: the mechanism, curves, sliders, and words that follow them. */
-import { cycleOf } from "./cycle.js";
-import { dragged } from "./drag.js";
-import { Engine } from "./engine.js";
-import { deadCentres } from "./geometry.js";
 import { Knobs } from "./knobs.js";
 import { Player } from "./player.js";
 import { Plot } from "./plot.js";
 import { Refused } from "./refused.js";
-import { Stage } from "./stage.js";
+import { Shown } from "./shown.js";
 import { Pen, add, watched, write } from "./svg.js";
 import { spanOf, tellingPose } from "./view.js";
-import { deadCentreMarks } from "./words.js";
 
 const DEGREE = Math.PI / 180;
-const LATER = 100; // ms after the last turn of a knob: the second pass
 
 /** One figure.
  *
@@ -22,14 +16,10 @@ const LATER = 100; // ms after the last turn of a knob: the second pass
  * { scene(turner, values, given), shapes(cycle, values, given), says(cycle, values, given),
  * levels(cycle), draw(svg, cycle, theta, size) }, each but shapes may be left out
  */
-export class Figure {
-  constructor(root, lesson, spec, made) {
-    Object.assign(this, { root, lesson, spec, made });
-    this.quick = new Engine(lesson.given.rules);
-    this.careful = new Engine(lesson.given.rules);
-    this.values = { ...spec.values };
-    this.cycle = null;
-    this.theta = null;
+export class Figure extends Shown {
+  constructor(root, { given, turner }, spec, made) {
+    super(given, spec.knobs);
+    Object.assign(this, { root, turner, spec, made, values: { ...spec.values } });
     this.stopped = false; // by hand
     const [move, button] = [(theta) => this.pose(theta), this.find(".play")];
     const words = { still: "►", moving: "❚❚" };
@@ -43,8 +33,7 @@ export class Figure {
   }
 
   listen() {
-    const { spec, lesson, root } = this;
-    const { sentences } = lesson.given;
+    const { spec, given: { sentences }, root } = this;
     this.knobs = new Knobs(this.find(".sliders"), { knobs: spec.knobs, sentences }, {
       turn: (name, value) => this.turn(name, value),
       release: () => {},
@@ -56,7 +45,8 @@ export class Figure {
     }
     const plots = [...root.querySelectorAll(".plot")];
     this.plots = plots.map((each) => new Plot(each, (degrees) => this.grasp(degrees)));
-    this.listenToStage();
+    const stage = this.find(".stage");
+    if (stage) this.draggedOn(stage, () => this.hold(), () => {});
     const drawing = this.find(".drawing");
     if (drawing) {
       watched(drawing, (size) => {
@@ -72,29 +62,11 @@ export class Figure {
     this.find(".angle")?.addEventListener("input", grasp);
   }
 
-  listenToStage() {
-    const svg = this.find(".stage");
-    this.stage = null;
-    if (!svg) return;
-    this.stage = new Stage(svg, this.lesson.given.compression, () => this.cycle && this.redraw());
-    dragged(this.stage, {
-      theta: () => this.theta,
-      turn: (theta) => this.seek(theta),
-      rim: (ratio) => this.turnRim(ratio),
-      grip: (kind) => kind !== "rim" && this.hold(),
-      release: () => {},
-    });
-  }
-
   /** Play while it is seen, unless it was stopped by hand. */
   seen(visible) {
     if (!this.find(".play") || this.cycle === null) return;
     const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.play(visible && !still && !this.stopped);
-  }
-
-  play(wanted) {
-    this.player.play(wanted, this.theta);
   }
 
   /** Stop for a hand. */
@@ -115,51 +87,35 @@ export class Figure {
     this.update();
   }
 
-  turnRim(ratio) {
-    const knob = this.spec.knobs.find((each) => each.name === "flywheel");
-    if (!knob) return;
-    const own = this.lesson.given.scene.crank.inertia;
-    this.turn("flywheel", Math.min(Math.max(ratio * own, knob.low), knob.high));
-    this.knobs.show(this.values);
-  }
-
   /** Compute and draw; where it cannot be, keep the last good picture and say why. */
   update() {
-    const { lesson: { given, turner }, made, values } = this;
+    const { given, turner, made, values } = this;
     try {
-      const scene = made.scene ? made.scene(turner, values, given) : turner.scene(values);
-      this.cycle = cycleOf(this.quick, scene, given.endings, { warm: this.cycle });
+      this.take(made.scene ? made.scene(turner, values, given) : turner.scene(values));
       this.say("");
     } catch (refused) {
       if (!(refused instanceof Refused)) throw refused;
       this.say(refused.message);
       return;
     }
-    clearTimeout(this.later);
-    this.later = setTimeout(() => this.refine(), LATER);
+    this.refineLater();
     this.root.dataset.passes = "1";
     this.redraw();
   }
 
-  /** The second pass, with cells cut until they are good. */
+  /** The second pass. */
   refine() {
-    const { cycle, lesson: { given } } = this;
-    const warm = cycle;
-    this.cycle = cycleOf(this.careful, cycle.scene, given.endings, { fine: true, warm });
+    this.cycle = this.refined();
     this.redraw();
     this.root.dataset.passes = "2";
   }
 
   redraw() {
-    const { cycle, spec, lesson, made } = this;
+    const { cycle, spec, given, made } = this;
     const k = Math.min(spec.cylinder, cycle.train.cylinders.length) - 1;
-    const own = lesson.given.scene.crank.inertia;
-    const ratio = own > 0 ? cycle.scene.crank.inertia / own : 1;
-    const heavy = spec.knobs.some((each) => each.name === "flywheel");
-    this.stage?.show(cycle, { k, body: spec.forces, ratio, heavy });
+    const marks = this.drawStage(k, spec.forces);
     if (made.levels) this.drawLevels(made.levels(cycle));
-    const marks = deadCentreMarks(cycle, k, deadCentres(cycle.train.shape));
-    const shapes = made.shapes(cycle, this.values, lesson.given);
+    const shapes = made.shapes(cycle, this.values, given);
     this.plots.forEach((plot, n) => plot.draw(shapes[n], marks));
     this.player.slower = Player.fitting(cycle.duration);
     this.speak();
@@ -172,9 +128,9 @@ export class Figure {
 
   /** Write what follows the sliders into the words around, { name: text }. */
   speak() {
-    const { made, cycle, values, root, lesson } = this;
+    const { made, cycle, values, root, given } = this;
     if (!made.says) return;
-    for (const [name, text] of Object.entries(made.says(cycle, values, lesson.given))) {
+    for (const [name, text] of Object.entries(made.says(cycle, values, given))) {
       for (const place of document.querySelectorAll(`[data-say="${root.id}.${name}"]`)) {
         write(place, text);
       }
@@ -195,12 +151,6 @@ export class Figure {
       pen.add("text", at, name);
     }
     pen.end();
-  }
-
-  /** Turn to a crank angle [rad], back into the cycle that is shown. */
-  seek(theta) {
-    this.pose(this.cycle.within(theta));
-    this.player.seek(this.theta);
   }
 
   pose(theta) {

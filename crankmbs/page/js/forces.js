@@ -1,5 +1,5 @@
 /** The forces on one body, as arrows: from where, how large, on what. */
-import { turnedBy } from "./drawing.js";
+import { turnedBy } from "./geometry.js";
 
 /** The bodies that one can look at. */
 export const BODIES = ["piston", "rod", "crank"];

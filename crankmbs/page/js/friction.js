@@ -39,20 +39,15 @@ export function frictionForce(friction, shape, { phi, x1 }, omega, gasForce) {
 }
 
 /** Crank angles of a period at which friction bends [rad]: dead centres, and where the gas on a
- * piston changes its sign, with its combustion and without. */
-export function frictionMarks(friction, shapes, cylinders, pressure, combustion, period) {
+ * piston changes its sign; cycles : of the pressure of one cylinder after the other, and so on */
+export function frictionMarks(friction, shapes, cylinders, cycles, period) {
   if (friction === null) return [];
-  const found = [];
-  cylinders.forEach(({ phase }, k) => {
-    found.push(...centresOver(shapes[k], phase, period));
-    if (friction.ring_pressure === 0 || !pressure.length) return;
-    const { knots, coefficients } = pressure[k];
+  const found = cylinders.flatMap(({ phase }, k) => centresOver(shapes[k], phase, period));
+  if (friction.ring_pressure === 0) return found;
+  cycles.forEach(({ knots, coefficients }, k) => {
+    const { phase } = cylinders[k % cylinders.length];
     const own = knots[knots.length - 1] - knots[0];
     const roots = signChanges(knots, coefficients);
-    if (combustion.length) {
-      const burning = coefficients.map((each, i) => each + combustion[k].coefficients[i]);
-      roots.push(...signChanges(knots, burning));
-    }
     found.push(...repeated(roots.map((angle) => angle - phase), period, own));
   });
   return found;

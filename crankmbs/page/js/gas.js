@@ -21,8 +21,8 @@ export const SEEN = 1e-5;
 const SUPPORT = [0, 0.25, 0.75, 1]; // Chebyshev's extrema: the ends are met exactly
 const BETWEEN = [0.1, 0.5, 0.9]; // where a cubic through the support errs most
 
-/** The cycles of the pressure without combustion, and of what combustion adds, of each cylinder;
- * those of the crank ends, if there are any.
+/** The cycles of the pressure of each cylinder, with fuel those without and with combustion; those
+ * of the crank ends, if there are any.
  *
  * gas : as Python passes it, or null; shape : may differ from that of the scene, gas.shape, which
  * is null where cylinders are unlike, and then each keeps its own
@@ -30,23 +30,24 @@ const BETWEEN = [0.1, 0.5, 0.9]; // where a cubic through the support errs most
  * closeness : of the absolute pressure, of cubics to a polytrope
  */
 export function pressuresOf(gas, shape, share, closeness = DIAGRAM) {
-  if (gas === null) return { pressure: [], combustion: [], crank_end: [] };
+  if (gas === null) return { pressure: [], firing: [], crank_end: [] };
   if (gas.shape === null || isShape(shape, gas.shape)) return gas;
   const close = { ...gas, closeness };
   const cycle = once((number) => cycleOf(close, gas.sources[number], shape));
   // cylinders of the same sources share what is made of them
   const made = once((sources) => {
     const [fired, motored, below] = JSON.parse(sources);
-    const net = (head) => (below === null ? head : netOf(head, cycle(below), share).net);
+    const net = (head) => (below === null ? head : netOf(head, cycle(below), share));
     const head = cycle(fired);
     if (motored === null) return { pressure: net(head) };
-    return combustionOf(net(head), net(cycleOf(close, gas.sources[motored], shape, head)));
+    const unfired = cycleOf(close, gas.sources[motored], shape, head);
+    return { pressure: net(unfired), firing: net(head) };
   });
   const all = gas.fired.map((fired, k) =>
     made(JSON.stringify([fired, gas.motored?.[k] ?? null, gas.below[k] ?? null])));
   return {
     pressure: all.map(({ pressure }) => pressure),
-    combustion: gas.motored === null ? [] : all.map(({ combustion }) => combustion),
+    firing: gas.motored === null ? [] : all.map(({ firing }) => firing),
     crank_end: gas.below.map(cycle),
   };
 }
@@ -227,14 +228,7 @@ function continued(gas, source, shape, fired) {
   return found;
 }
 
-/** The pressure without combustion, and what combustion adds to it, on the same knots. */
-function combustionOf(fired, motored) {
-  const { net, other } = netOf(fired, motored, 1);
-  return { pressure: other, combustion: net };
-}
-
-/** A cycle less a share of another, { net }, and the { other }, on the knots of both over their
- * least common period. */
+/** A cycle less a share of another, on the knots of both over their least common period. */
 function netOf(one, other, share) {
   const [first] = one.knots;
   const turns = [one, other].map(({ knots }) => Math.round((knots.at(-1) - knots[0]) / TURN));
@@ -248,10 +242,9 @@ function netOf(one, other, share) {
     }
   }
   const knots = distinct(marks, KNOT);
-  const less = cycleOn(other, knots);
+  const { coefficients: less } = cycleOn(other, knots);
   const { coefficients: of } = cycleOn(one, knots);
-  const coefficients = of.map((c, k) => c - share * less.coefficients[k]);
-  return { net: { knots, coefficients }, other: less };
+  return { knots, coefficients: of.map((c, k) => c - share * less[k]) };
 }
 
 function knotsBetween(cycle, low, high) {
@@ -267,10 +260,12 @@ function cycleOn({ knots: own, coefficients: of }, knots) {
   const m = knots.length - 1;
   const period = own[n] - own[0];
   const coefficients = new Float64Array(4 * m);
+  let piece = n;
   for (let k = 0; k < m; k++) {
     const middle = 0.5 * (knots[k] + knots[k + 1]);
     const within = middle - Math.floor((middle - own[0]) / period) * period;
-    const piece = countUpTo(own, within, 1, n) - 1;
+    if (piece === n || within < own[piece]) piece = countUpTo(own, within, 1, n) - 1;
+    while (piece + 1 < n && own[piece + 1] <= within) piece++;
     const x = within - own[piece] - (middle - knots[k]);
     const [a, b, c, d] = [of[piece], of[n + piece], of[2 * n + piece], of[3 * n + piece]];
     coefficients[k] = a;

@@ -106,3 +106,10 @@ export function throwAngles(above, below, shape) {
 export function runningGear({ crank, rod, piston, cylinders }) {
   return cylinders.map(({ own }) => own ?? { radius: crank.radius, rod, piston });
 }
+
+/** A vector from a cylinder's frame in the engine's. */
+export function turnedBy(bank, x, y) {
+  if (bank === 0) return [x, y];
+  const [cos, sin] = [Math.cos(bank), Math.sin(bank)];
+  return [cos * x - sin * y, sin * x + cos * y];
+}

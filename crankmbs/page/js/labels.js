@@ -15,18 +15,25 @@ export function boxBeside({ left, top, width, height }, size, { letters, type, l
 }
 
 /** Write names { name, kind, x, y of the arrow's end } to the left and right of a stage's drawing,
- * each with a line to its arrow; where there is little room, in two rows. */
+ * each with a line to its arrow; where there is little room, in two rows, or on the other side. */
 export function namesBeside(pen, names, { type, edge, sides }) {
   const middle = 0.5 * (sides.left + sides.right);
+  const room = { [-1]: sides.left - edge.left, 1: edge.right - sides.right };
+  const wideOf = (rows) => LETTER * type * Math.max(...rows.map((row) => row.length));
+  const rowsOf = (name, side) =>
+    (wideOf([name]) <= room[side] ? [name] : name.split(/ (.*)/, 2));
+  const sideOf = ({ name, x }) => {
+    const side = x < middle - 0.1 * type ? -1 : 1;
+    const fits = wideOf(rowsOf(name, side)) <= room[side] || room[-side] <= room[side];
+    return fits ? side : -side;
+  };
   for (const side of [-1, 1]) {
-    const here = names.filter(({ x }) => (x < middle - 0.1 * type ? -1 : 1) === side);
+    const here = names.filter((each) => sideOf(each) === side);
     here.sort((one, two) => one.y - two.y);
-    const room = side > 0 ? edge.right - sides.right : sides.left - edge.left;
     let least = edge.top + 1.2 * type;
     for (const { name, kind, x, y } of here) {
-      const fits = LETTER * type * name.length <= room;
-      const rows = fits ? [name] : name.split(/ (.*)/, 2);
-      const wide = LETTER * type * Math.max(...rows.map((row) => row.length));
+      const rows = rowsOf(name, side);
+      const wide = wideOf(rows);
       const at = Math.max(y, least);
       const near = side > 0
         ? Math.min(sides.right, edge.right - wide)

@@ -5,6 +5,7 @@
  * rod ratio lambda = r / l and k = e / r the truncated motion and forces stop after the second
  * harmonic. Displacement counts from l + r; a force towards the crank is positive.
  */
+import { turnedBy } from "./geometry.js";
 import { pressureAt } from "./reactions.js";
 
 /** Piston displacement [m], velocity and acceleration, exact at any angular acceleration. */
@@ -73,13 +74,13 @@ export const LECTURES = {
  */
 export function lecturedAt(train, lecture, sample) {
   const { theta, omega, alpha } = sample;
-  const cylinders = train.cylinders.map((_, k) => cylinderLectured(train, lecture, sample, k));
   const { crank } = train;
   let [x, y] = inertiaAtThrow(crank.mass, crank.center_of_mass, theta, omega, alpha);
-  cylinders.forEach((found, k) => {
-    const [sin, cos] = [Math.sin(train.cylinders[k].bank), Math.cos(train.cylinders[k].bank)];
-    x += found["crank pin force x"] * cos - found["crank pin force y"] * sin;
-    y += found["crank pin force x"] * sin + found["crank pin force y"] * cos;
+  const cylinders = train.cylinders.map(({ bank }, k) => {
+    const found = cylinderLectured(train, lecture, sample, k);
+    const pull = turnedBy(bank, found["crank pin force x"], found["crank pin force y"]);
+    [x, y] = [x + pull[0], y + pull[1]];
+    return found;
   });
   return { "main bearing force x": x, "main bearing force y": y, cylinders };
 }

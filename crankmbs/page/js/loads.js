@@ -34,9 +34,10 @@ function laterPhase(load, phase, t, omega) {
 /** Torque of the acting loads over the crank angle [N m]. */
 export function torqueOverAngle(loads, phases, theta) {
   let torque = 0;
-  loads.forEach((load, k) => {
-    if (load.over_angle && phases[k] === ACTING) torque += valueAt(load.over_angle, theta);
-  });
+  for (let k = 0; k < loads.length; k++) {
+    const { over_angle: cycle } = loads[k];
+    if (cycle && phases[k] === ACTING) torque += valueAt(cycle, theta);
+  }
   return torque;
 }
 

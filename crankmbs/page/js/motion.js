@@ -5,6 +5,7 @@
  * that are the knots of pressures and loads over the angle. Where a load bends or jumps in time or
  * speed the motion lands on the kink and goes on from there in a new cell.
  */
+import { AffineCells, areAffine } from "./affine.js";
 import { countUpTo, rootIn } from "./arrays.js";
 import { Stepper } from "./cell.js";
 import { Firing } from "./fuel.js";
@@ -31,7 +32,7 @@ export class Travel {
     this.phases = firstPhases(train.loads, omega);
     this.firing = new Firing(train.fuel, train.cylinders, train.period, this.start);
     this.path = new Path(grid.rule);
-    this.atNodes = null; // torque and slowness of as many cells as a period has
+    this.atNodes = { first: Infinity }; // torque and slowness of as many cells as a period has
     this.stepper = new Stepper(grid.rule);
     this.factor = 1;
     this.lost = 0; // of the energy and the time by rounding
@@ -50,6 +51,8 @@ export class Travel {
       return false;
     }
     this.branch.tEnd = Math.min(this.branch.tEnd, this.stop.time);
+    // cells by the shares of the combustion
+    this.affine = areAffine(train, this.branch, this.sense) ? new Map() : null;
     return true;
   }
 
@@ -79,8 +82,11 @@ export class Travel {
     if (!last && this.sense * (target - this.theta) <= SLIVER) return;
     const short = high - low - Math.abs(target - this.theta);
     const whole = target === edge && Math.abs(short) < SLIVER;
-    if (whole) this.stepper.take(this, k);
-    this.pass(target, whole ? k : -1);
+    if (!whole) this.pass(target, -1);
+    else if (!this.follow(target, k)) {
+      this.stepper.take(this, k);
+      this.pass(target, k);
+    }
     while (this.ending === null && this.theta !== target) this.pass(target, -1);
     if (this.ending !== null) return;
     if (last) this.ending = "complete";
@@ -93,51 +99,61 @@ export class Travel {
       [time, sense * Math.sqrt((2 * energy) / reduceAt(train, theta).inertia)]);
   }
 
+  /** Through whole cell k without solving it, if it is affine and its branch holds up to its end;
+   * whether so. */
+  follow(target, k) {
+    const { affine, firing: { shares }, energy, time, branch } = this;
+    if (affine === null) return false;
+    if (!affine.has(shares)) affine.set(shares, new AffineCells(this, branch, shares));
+    const cells = affine.get(shares);
+    const { torque, slowness, first } = this.room();
+    const spent = cells.pass(k, energy, torque, slowness, first);
+    if (time + spent >= branch.tEnd) return false;
+    const growth = cells.growth[k];
+    const gained = growth * energy + cells.rise[k];
+    if (!(energy + gained > 0) || cells.isSlow(k, energy)) this.ending = "slow";
+    else this.accept(target, k, { gained, spent, growth });
+    return true;
+  }
+
   /** To an angle, or the first kink on the way; number : of the cell, if it is a whole one. */
   pass(target, number) {
     const { stepper } = this;
+    const width = target - this.theta;
     if (number < 0) stepper.tabulate(this, target);
-    if (!stepper.solve(this, target - this.theta) || stepper.isSlow()) {
+    if (!stepper.solve(this, width) || stepper.isSlow()) {
       this.ending = "slow";
       return;
     }
-    const exit = this.exit(target - this.theta);
-    if (exit === null) this.accept(target, number);
+    const exit = this.exit(width);
+    if (exit === null) this.accept(target, number, stepper.passed(width, this.room()));
     else this.land(target, exit);
   }
 
-  /** Add the solved cell and go on to its end. */
-  accept(target, number) {
-    const { stepper, energy, time } = this;
-    const width = target - this.theta;
-    const { sense, branch, phases } = this;
-    const { torque, slowness, first } = this.room(stepper.torque.length);
-    for (let j = 0; j < stepper.torque.length; j++) {
-      torque[first + j] = stepper.torque[j];
-      slowness[first + j] = stepper.slowness[j];
-    }
+  /** Add a cell, of which torque and slowness are in their room, and go on to its end. */
+  accept(target, number, { gained: more, spent: longer, growth }) {
+    const { theta, energy, time, sense, branch, phases, firing: { shares } } = this;
+    const { torque, slowness, first } = this.atNodes;
     this.path.add({
-      from: this.theta, width, energy, time, sense,
-      branch, phases, shares: this.firing.shares, number, torque, slowness, first,
+      from: theta, width: target - theta, energy, time, sense,
+      branch, phases, shares, number, torque, slowness, first,
     });
-    if (number >= 0) stepper.keep(this, number);
-    const gained = width * stepper.work - this.lost;
+    this.atNodes.first += this.grid.rule.nodes.length;
+    const gained = more - this.lost;
     this.energy = energy + gained;
     this.lost = this.energy - energy - gained;
-    const spent = Math.abs(width) * stepper.spent - this.late;
+    const spent = longer - this.late;
     this.time = time + spent;
     this.late = this.time - time - spent;
-    this.factor *= 1 + stepper.growth(width);
+    this.factor *= 1 + growth;
     this.theta = target;
     this.stuck = 0;
   }
 
-  /** Where torque and slowness of the next cell of so many stages go. */
-  room(stages) {
+  /** Where torque and slowness of the next cell go. */
+  room() {
     const { length } = this.grid.nodes;
-    const first = this.atNodes === null ? length : this.atNodes.first + stages;
-    if (first < length) this.atNodes.first = first;
-    else {
+    if (this.atNodes.first >= length) {
       const [torque, slowness] = [new Float64Array(length), new Float64Array(length)];
       this.atNodes = { torque, slowness, first: 0 };
     }
@@ -184,8 +200,9 @@ export class Travel {
       const next = width + step;
       width = next / whole > 0 ? next : 0.5 * width;
     }
-    if (Math.abs(width) > SLIVER) this.accept(this.theta + width, -1);
-    else if (++this.stuck > 3) this.ending = "held";
+    if (Math.abs(width) > SLIVER) {
+      this.accept(this.theta + width, -1, stepper.passed(width, this.room()));
+    } else if (++this.stuck > 3) this.ending = "held";
     if (this.ending === null) this.arrive(exit);
   }
 

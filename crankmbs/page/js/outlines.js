@@ -19,10 +19,7 @@ export function webOf(r) {
     `A${0.78 * r} ${0.78 * r} 0 0 1 ${-c} ${0.25 * r}L${-0.3 * r} 0Z`;
 }
 
-/** A rod that tapers from its big end to its small one. */
-export function rodOf([ax, ay], [bx, by], wide, narrow) {
-  const long = Math.hypot(bx - ax, by - ay);
-  const [nx, ny] = [-(by - ay) / long, (bx - ax) / long];
-  const at = (x, y, side) => `${(x + side * nx).toFixed(1)} ${(y + side * ny).toFixed(1)}`;
-  return `M${at(ax, ay, wide)}L${at(bx, by, narrow)}L${at(bx, by, -narrow)}L${at(ax, ay, -wide)}Z`;
+/** A rod of a length that tapers from its big end down to its small one, the latter at 0. */
+export function rodOf(length, wide, narrow) {
+  return `M${-narrow} 0H${narrow}L${wide} ${length}H${-wide}Z`;
 }

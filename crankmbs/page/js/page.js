@@ -1,10 +1,6 @@
 /** The page: knobs, mechanism and plots of one scene, and what happens between them. */
 import { fillChoices, listenToChoices, showChoices, showSlower } from "./controls.js";
 import { say, seenPlots, showWords, unfold, unused } from "./controls.js";
-import { cycleOf } from "./cycle.js";
-import { dragged } from "./drag.js";
-import { Engine } from "./engine.js";
-import { deadCentres } from "./geometry.js";
 import { valuesOf } from "./given.js";
 import { enlarge, find, listenToKeys } from "./keys.js";
 import { Knobs } from "./knobs.js";
@@ -12,16 +8,14 @@ import { Player } from "./player.js";
 import { Plot } from "./plot.js";
 import { drawn } from "./quantities.js";
 import { Refused } from "./refused.js";
-import { Stage } from "./stage.js";
+import { Shown } from "./shown.js";
 import { Address } from "./state.js";
 import { write } from "./svg.js";
 import { dataFile, save } from "./taken.js";
 import { Turner } from "./turned.js";
 import { firstView, keysOf, tellingPose } from "./view.js";
-import { deadCentreMarks } from "./words.js";
 
 const DEGREE = Math.PI / 180;
-const LATER = 100; // ms after a knob is let go: the second pass
 const PLOTS = ["upper", "lower"];
 
 /** Begin with what Python wrote into the page. */
@@ -29,17 +23,12 @@ export function start() {
   return new Page(valuesOf(JSON.parse(document.getElementById("given").textContent)));
 }
 
-class Page {
+class Page extends Shown {
   constructor(given) {
-    this.given = given;
+    super(given, given.knobs);
     this.turner = new Turner(given);
-    this.quick = new Engine(given.rules);
-    this.careful = new Engine(given.rules);
-    this.values = {};
     this.view = firstView(given);
-    this.cycle = null;
     this.address = new Address(keysOf(given), given.sentences);
-    this.stage = new Stage(find("stage"), given.compression, () => this.redraw());
     const move = (theta) => this.pose(theta);
     this.player = new Player({ cycle: () => this.cycle, move, button: find("play") });
     this.listen();
@@ -53,13 +42,7 @@ class Page {
       release: () => this.release(),
       refuse: say,
     });
-    dragged(this.stage, {
-      theta: () => this.theta,
-      turn: (theta) => this.seek(theta),
-      rim: (ratio) => this.turnRim(ratio),
-      grip: (kind) => kind !== "rim" && this.play(false),
-      release: () => this.release(),
-    });
+    this.draggedOn(find("stage"), () => this.play(false), () => this.release());
     this.plots = Object.fromEntries(PLOTS.map((name) => [name, this.plot(name)]));
     listenToChoices((name, value) => {
       if (name in this.view) this.view = { ...this.view, [name]: value };
@@ -147,13 +130,6 @@ class Page {
     this.update();
   }
 
-  /** Give the flywheel a ratio of its inertia to the scene's own, between the ends of its knob. */
-  turnRim(ratio) {
-    const { low, high, value } = this.given.knobs.find(({ name }) => name === "flywheel");
-    this.turn("flywheel", Math.min(Math.max(ratio * value, low), high));
-    this.knobs.show(this.values);
-  }
-
   reset() {
     this.values = {};
     this.view = { ...firstView(this.given), angle: this.view.angle };
@@ -175,24 +151,14 @@ class Page {
   }
 
   compute() {
-    const { values } = this;
-    const asked = this.turner.scene(values);
-    this.cycle = cycleOf(this.quick, asked, this.given.endings, { warm: this.cycle });
-    Object.assign(this, { good: values, error: null });
-    clearTimeout(this.later);
+    this.take(this.turner.scene(this.values));
+    Object.assign(this, { good: this.values, error: null });
   }
 
-  /** The second pass, once a hand has let go. */
-  refineLater() {
-    clearTimeout(this.later);
-    if (this.error === null && this.cycle) this.later = setTimeout(() => this.refine(), LATER);
-  }
-
-  /** The second pass: cells cut until they are good, measures, and how far the first was off. */
+  /** The second pass, and how far the first was off. */
   refine() {
-    const { cycle, given: { endings } } = this;
-    const better = cycleOf(this.careful, cycle.scene, endings, { fine: true, warm: cycle });
-    const apart = better.rows.map(({ omega }, k) => Math.abs(omega - cycle.rows[k].omega));
+    const [better, { rows }] = [this.refined(), this.cycle];
+    const apart = better.rows.map(({ omega }, k) => Math.abs(omega - rows[k].omega));
     this.error = Math.max(...apart) / Math.abs(better.mean);
     this.cycle = better;
     this.redraw();
@@ -202,11 +168,7 @@ class Page {
     const { cycle, given, view } = this;
     if (!cycle) return;
     const k = Math.min(Number(view.cylinder), cycle.train.cylinders.length) - 1;
-    const own = given.scene.crank.inertia;
-    const ratio = own > 0 ? cycle.scene.crank.inertia / own : 1;
-    const heavy = own > 0 && given.knobs.some((each) => each.name === "flywheel");
-    this.stage.show(cycle, { k, body: view.forces, ratio, heavy });
-    const marks = deadCentreMarks(cycle, k, deadCentres(cycle.train.gears[k].shape));
+    const marks = this.drawStage(k, view.forces);
     for (const name of seenPlots()) this.plots[name].draw(drawn(view[name], cycle, k), marks);
     showChoices(given, cycle, { ...given.own, ...view, ...this.values, cylinder: String(k + 1) });
     this.knobs.disable(unused(cycle, given));
@@ -215,12 +177,6 @@ class Page {
     });
     showWords(given, cycle, this.error);
     this.seek(this.theta ?? tellingPose(cycle));
-  }
-
-  /** Turn to a crank angle [rad], back into the cycle that is shown. */
-  seek(theta) {
-    this.pose(this.cycle.within(theta));
-    this.player.seek(this.theta);
   }
 
   pose(theta) {
@@ -232,10 +188,6 @@ class Page {
     write(find("degrees"), `${degrees.toFixed(0)}°`);
     find("angle").setAttribute("aria-valuetext", find("degrees").textContent);
     write(find("lead"), this.stage.leadInWords(theta));
-  }
-
-  play(wanted) {
-    this.player.play(wanted, this.theta);
   }
 
   /** A hand lets go: refine, and keep in the address what is shown. */

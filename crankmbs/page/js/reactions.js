@@ -8,6 +8,7 @@
 import { appliedForce } from "./applied.js";
 import { valueAt } from "./cubics.js";
 import { frictionForce } from "./friction.js";
+import { turnedBy } from "./geometry.js";
 import { gravityVector, rodCentre } from "./tables.js";
 
 /** All variables at one sample { time, theta, omega, alpha, external_torque, shares }: numbers, and
@@ -97,25 +98,18 @@ function cylinderAt(train, { theta, omega, alpha, shares }, number) {
   if (train.applies) variables.applied_force = applied;
   return {
     variables,
-    pull: turned(bank, throwX, throwY),
-    shake: turned(bank, ...shaking),
+    pull: turnedBy(bank, throwX, throwY),
+    shake: turnedBy(bank, ...shaking),
     moment: -at.x * side - e * push,
     kinetic: 0.5 * (inertia + rod.inertia * at.beta1 ** 2) * square,
   };
 }
 
 /** What pushes a piston, over its area [Pa], with its share of the combustion. */
-export function pressureAt({ pressure, combustion }, shares, number, phi) {
-  let found = pressure.length ? valueAt(pressure[number], phi) : 0;
-  if (combustion.length) found += shares[number] * valueAt(combustion[number], phi);
-  return found;
-}
-
-/** A vector from a cylinder's frame in the engine's. */
-function turned(bank, x, y) {
-  if (bank === 0) return [x, y];
-  const [cos, sin] = [Math.cos(bank), Math.sin(bank)];
-  return [cos * x - sin * y, sin * x + cos * y];
+export function pressureAt({ pressure, firing }, shares, number, phi) {
+  const found = pressure.length ? valueAt(pressure[number], phi) : 0;
+  if (!firing.length) return found;
+  return found + shares[number] * (valueAt(firing[number], phi) - found);
 }
 
 function crankAt({ crank, gravity, levers, throws }, { theta, omega, alpha }, cylinders) {

@@ -5,10 +5,10 @@
  * back what came, with its derivative multiplied up along the period. With a = 1 and nothing gained
  * every speed is periodic: that with the start's mean is kept.
  */
-import { AffinePeriod } from "./affine.js";
+import { AffinePeriod, areAffine } from "./affine.js";
 import { countUpTo } from "./arrays.js";
 import { SLOW } from "./cell.js";
-import { branchAt, firstPhases, isAffine } from "./loads.js";
+import { branchAt, firstPhases } from "./loads.js";
 import { Travel } from "./motion.js";
 import { givenAt, reduceAt } from "./tables.js";
 
@@ -64,10 +64,7 @@ export class Section {
   /** The branch at a speed if under it every cell is affine, at whatever speed; else null. */
   affineBranch(omega) {
     const branch = this.branch(omega);
-    const drags = this.train.gears.some(({ drag }) => drag > 0);
-    if (branch === null || !isAffine(branch) || drags) return null;
-    const ends = (limit) => this.sense * limit > 0 && Number.isFinite(limit);
-    return ends(branch.low) || ends(branch.high) ? null : branch;
+    return branch !== null && areAffine(this.train, branch, this.sense) ? branch : null;
   }
 
   shot(energy) {

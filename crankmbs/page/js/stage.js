@@ -1,11 +1,12 @@
 /** The mechanism, to scale: crank, rods, pistons, cylinders and flywheel, the forces on one body,
  * and a ring that turns at the mean speed. */
-import { proportions, turnedBy } from "./drawing.js";
+import { proportions } from "./drawing.js";
 import { BODIES, forcesOn } from "./forces.js";
 import { general, readable, roundBelow } from "./format.js";
+import { turnedBy } from "./geometry.js";
 import { LETTER, boxBeside, looksOf, namesBeside, whichOf } from "./labels.js";
 import { arrowOf, rodOf, webOf } from "./outlines.js";
-import { Pen, add, set, watched } from "./svg.js";
+import { Pen, add, set, turn, watched } from "./svg.js";
 
 const REACH = 1.2; // of the crank radius: the longest arrow
 const LEAD = (14 * Math.PI) / 180; // the ring's magnified lead, at most
@@ -156,7 +157,7 @@ export class Stage {
     const { bank } = this.train.cylinders[k];
     const looks = looksOf(this.train, k, this.k);
     const group = add(this.root, "g", { class: looks });
-    const fixed = add(group, "g", { transform: `rotate(${(-bank * 180) / Math.PI})` });
+    const fixed = add(group, "g");
     const pale = looks === "cylinder pale"; // no cylinder is drawn around its piston
     const gas = pale ? null : add(fixed, "rect", { class: "gas" });
     const wall = pale ? null : add(fixed, "path", { class: "wall" });
@@ -164,32 +165,35 @@ export class Stage {
     const body = add(piston, "rect");
     const grooves = add(piston, "path", { class: "groove" });
     const crank = add(group, "path", { class: "web grip", "data-grip": "crank", "data-k": k });
-    const rod = add(group, "path", { class: "rod" });
+    const rod = add(group, "g", { class: "rod" });
+    const bar = add(rod, "path");
+    const small = add(rod, "circle", { class: "eye" });
     const pin = add(group, "circle", { class: "eye grip", "data-grip": "pin", "data-k": k });
-    const small = add(group, "circle", { class: "eye" });
-    return { gas, wall, piston, body, grooves, crank, rod, pin, small };
+    return { bank, fixed, gas, wall, piston, body, grooves, crank, rod, bar, small, pin };
   }
 
   fitCylinder(part, sizes) {
-    const { gas, wall, body, grooves, crank, pin, small } = part;
+    const { bank, fixed, gas, wall, body, grooves, crank, bar, small, pin } = part;
     const scale = (value) => value * UNITS;
     const middle = -scale(sizes.offset);
     const half = scale(0.5 * sizes.width);
     const [head, low] = [-scale(sizes.head), -scale(sizes.low)];
     Object.assign(part, { head, middle });
+    set(fixed, { transform: `${turn(bank)} translate(${middle} 0)` });
     if (wall) {
-      set(gas, { x: middle - half, width: 2 * half, y: head });
+      set(gas, { x: -half, width: 2 * half, y: head });
       const thick = scale(0.06 * sizes.width);
-      const d = `M${middle - half - thick / 2} ${low}V${head - thick / 2}` +
-        `H${middle + half + thick / 2}V${low}`;
+      const edge = half + thick / 2;
+      const d = `M${-edge} ${low}V${head - thick / 2}H${edge}V${low}`;
       set(wall, { d, "stroke-width": thick });
     }
-    const [x, width, crown] = [middle - half * 0.985, 1.97 * half, scale(sizes.crown)];
+    const [x, width, crown] = [-0.985 * half, 1.97 * half, scale(sizes.crown)];
     const high = crown + scale(sizes.skirt);
     set(body, { x, width, y: -crown, height: high, rx: 0.09 * half });
     const groove = (n) => `M${x} ${-crown * (1 - 0.16 * n)}h${width}`;
     set(grooves, { d: [1, 2, 3].map(groove).join("") });
     set(crank, { d: webOf(scale(sizes.r)) });
+    set(bar, { d: rodOf(scale(sizes.length), 0.17 * scale(sizes.r), 0.1 * scale(sizes.r)) });
     set(pin, { r: 0.2 * scale(sizes.r) });
     set(small, { r: 0.13 * scale(sizes.r) });
   }
@@ -199,22 +203,18 @@ export class Stage {
     const v = this.cycle.at(theta);
     this.parts.forEach((_, k) => this.poseCylinder(k, theta, v.cylinders[k]));
     const rim = this.sizes.rim * UNITS;
-    const turn = (angle) => `rotate(${(-angle * 180) / Math.PI})`;
     const notch = 0.12 * this.sizes.r * UNITS;
-    set(this.mark, {
-      d: `M0 ${-rim}l${-notch} ${2 * notch}h${2 * notch}Z`,
-      transform: turn(theta),
-    });
-    this.poseRing(theta, turn);
+    const d = `M0 ${-rim}l${-notch} ${2 * notch}h${2 * notch}Z`;
+    set(this.mark, { d, transform: turn(theta) });
+    this.poseRing(theta);
     this.poseArrows(v);
-    return v;
   }
 
   poseCylinder(k, theta, at) {
     const { train, parts } = this;
     const sizes = this.sizes.each[k];
     const { phase, bank } = train.cylinders[k];
-    const { gas, piston, crank, rod, pin, small, head, middle } = parts[k];
+    const { gas, piston, crank, rod, pin, head, middle } = parts[k];
     const r = sizes.r * UNITS;
     const x = at.piston_position * UNITS;
     set(piston, { transform: `translate(0 ${-x})` });
@@ -227,14 +227,14 @@ export class Stage {
     const angle = theta + phase + bank;
     const [cx, cy] = onScreen(turnedBy(angle, r, 0));
     const [px, py] = onScreen(turnedBy(bank, x, -middle));
-    set(crank, { transform: `rotate(${(-angle * 180) / Math.PI})` });
-    set(rod, { d: rodOf([cx, cy], [px, py], 0.17 * r, 0.1 * r) });
+    set(crank, { transform: turn(angle) });
+    const lean = Math.atan2(cx - px, cy - py);
+    set(rod, { transform: `translate(${px} ${py}) ${turn(lean)}` });
     set(pin, { cx, cy });
-    set(small, { cx: px, cy: py });
   }
 
   /** The ring stands where an evenly turning crank would, its lag or lead magnified. */
-  poseRing(theta, turn) {
+  poseRing(theta) {
     if (!this.magnified) return;
     const lead = this.magnified * this.cycle.leadAt(theta);
     set(this.turning, { transform: turn(theta - lead) });

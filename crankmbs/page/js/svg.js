@@ -28,6 +28,11 @@ export function write(element, text) {
   else if (node.data !== text) node.data = text;
 }
 
+/** The transform that turns counter-clockwise by an angle [rad]. */
+export function turn(angle) {
+  return `rotate(${(-angle * 180) / Math.PI})`;
+}
+
 /** Draws into a group over what it drew there before. */
 export class Pen {
   constructor(group) {

@@ -13,13 +13,13 @@ const PUSHES = ["torque", "gas", "combustion", "rings", "drag"];
 class Table {
   /** angles : so many in a cell; all comes again after a period */
   constructor(train, angles, stages, period) {
-    const { crank, cylinders, gravity, friction, pressure, combustion } = train;
+    const { crank, cylinders, gravity, friction, pressure, firing } = train;
     this.angles = angles;
     this.length = angles.length;
-    Object.assign(this, columns(SUMS, angles.length, 0));
+    Object.assign(this, columns(SUMS, angles.length));
     const each = (there) => (there ? cylinders.map(() => new Float64Array(angles.length)) : []);
     this.gas = each(friction?.ring_pressure && pressure.length);
-    this.combustion = each(combustion.length);
+    this.combustion = each(firing.length);
     this.torque.forEach((_, n) => (this.torque[n] = crankWeight(crank, gravity, angles[n])));
     this.add(train, repeating(train, angles, stages, period));
     this.row = { theta: 0, inertia: 0.5, slope: 0.5, torque: 0.5, rings: 0.5, drag: 0.5 };
@@ -32,16 +32,19 @@ class Table {
     const { angles, gas, combustion } = this;
     const [masses, pushes] = [[], []];
     train.cylinders.forEach(({ phase }, k) => {
-      const mass = (masses[heavy[k]] ??= columns(MASSES, turn, NaN));
-      const push = (pushes[like[k]] ??= columns(PUSHES, whole, NaN));
+      const place = (n) => (n + ahead[k]) % whole;
+      const mass = (masses[heavy[k]] ??= columns(MASSES, turn));
+      for (let n = 0; heavy[k] === k && n < turn; n++) {
+        fillMass(mass, place(n) % turn, massesAt(train, k, angles[n] + phase));
+      }
+      const push = (pushes[like[k]] ??= columns(PUSHES, whole));
+      for (let n = 0; like[k] === k && n < whole; n++) {
+        const at = place(n) % turn;
+        fillPush(push, place(n), pushAt(train, k, angles[n] + phase, mass.x[at], mass.x1[at]));
+      }
       for (let n = 0; n < angles.length; n++) {
-        const to = (n + ahead[k]) % whole;
+        const to = place(n);
         const at = to % turn;
-        const phi = angles[n] + phase;
-        if (Number.isNaN(mass.x[at])) fillMass(mass, at, massesAt(train, k, phi));
-        if (Number.isNaN(push.gas[to])) {
-          fillPush(push, to, pushAt(train, k, phi, mass.x[at], mass.x1[at]));
-        }
         this.inertia[n] += mass.inertia[at];
         this.slope[n] += mass.slope[at];
         this.torque[n] += mass.weight[at] + push.torque[to];
@@ -68,8 +71,8 @@ class Table {
   }
 }
 
-function columns(names, count, value) {
-  return Object.fromEntries(names.map((name) => [name, new Float64Array(count).fill(value)]));
+function columns(names, count) {
+  return Object.fromEntries(names.map((name) => [name, new Float64Array(count)]));
 }
 
 // by name, not in a loop over names, which takes several times as long
@@ -93,12 +96,12 @@ function fillPush(to, n, { torque, gas, combustion, rings, drag }) {
 /** After how many angles the masses and all else come again, by how many each cylinder is ahead,
  * and the numbers of the first cylinders with the same masses and with the same push: in cells of
  * one width like cylinders meet the same angles. Else nothing comes again. */
-function repeating({ cylinders, gears, pressure, combustion }, angles, stages, period) {
+function repeating({ cylinders, gears, pressure, firing }, angles, stages, period) {
   const count = Math.round(period / (angles[stages] - angles[0]));
   const width = period / count;
   const cells = [TURN, ...cylinders.map(({ phase }) => wrapped(phase, period))]
     .map((angle) => angle / width);
-  const even = count > 0 &&
+  const even = count > 0 && stages * count <= angles.length &&
     cells.every((each) => Math.abs(each - Math.round(each)) < SLIVER / width) &&
     angles.every((each, n) => n < stages || Math.abs(each - angles[n - stages] - width) < SLIVER);
   if (!even) {
@@ -109,7 +112,7 @@ function repeating({ cylinders, gears, pressure, combustion }, angles, stages, p
   const [turn, ...ahead] = cells.map((each) => stages * Math.round(each));
   const heavy = firstLike(cylinders.map(({ own, bank }, k) => [own ? k : null, bank]));
   const like = firstLike(cylinders.map((_, k) => [
-    heavy[k], gears[k].applied, ...[pressure[k], combustion[k]].flatMap((cycle) =>
+    heavy[k], gears[k].applied, ...[pressure[k], firing[k]].flatMap((cycle) =>
       [cycle?.knots, cycle?.coefficients]),
   ]));
   return { turn, whole: stages * count, ahead, heavy, like };
@@ -124,12 +127,12 @@ function firstLike(lists) {
  * again after a period. */
 export function tableMaker() {
   return remembering((...about) => new Table(...about), (train, angles) => {
-    const { crank, gears, cylinders, gravity, friction, pressure, combustion } = train;
+    const { crank, gears, cylinders, gravity, friction, pressure, firing } = train;
     const parts = gears.map(({ shape, rod, piston, drag, applied }) => [
       shape, rod.mass, rod.center_of_mass, rod.inertia, piston.mass, piston.area, drag, applied,
     ]);
     const first = crank.mass * crank.center_of_mass;
-    return [angles, parts, cylinders, first, gravity, friction, pressure, combustion];
+    return [angles, parts, cylinders, first, gravity, friction, pressure, firing];
   });
 }
 

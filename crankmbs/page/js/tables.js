@@ -35,9 +35,9 @@ export function reduceAt(train, theta) {
 
 /** The same without the crank's inertia. */
 export function movingAt(train, theta) {
-  const { crank, cylinders, gravity, friction, pressure, combustion } = train;
+  const { crank, cylinders, gravity, friction, pressure, firing } = train;
   const gas = friction?.ring_pressure && pressure.length ? [] : NOTHING;
-  const burning = combustion.length ? [] : NOTHING;
+  const burning = firing.length ? [] : NOTHING;
   let [inertia, slope, rings, drag] = [0, 0, 0, 0];
   let torque = crankWeight(crank, gravity, theta);
   for (let k = 0; k < cylinders.length; k++) {
@@ -57,7 +57,7 @@ export function movingAt(train, theta) {
 
 /** What pushes the piston of cylinder k at a cycle angle [rad] does to the crank: torque of gas and
  * forces, that of the gas alone and what combustion adds, rings and drag. */
-export function pushAt({ gears, friction, pressure, combustion }, k, phi, x, x1) {
+export function pushAt({ gears, friction, pressure, firing }, k, phi, x, x1) {
   const { piston, drag } = gears[k];
   const lever = -piston.area * x1;
   const gas = pressure.length ? lever * valueAt(pressure[k], phi) : 0;
@@ -65,7 +65,7 @@ export function pushAt({ gears, friction, pressure, combustion }, k, phi, x, x1)
   return {
     torque: gas - x1 * steady,
     gas,
-    combustion: combustion.length ? lever * valueAt(combustion[k], phi) : 0,
+    combustion: firing.length ? lever * valueAt(firing[k], phi) - gas : 0,
     rings: Math.abs(x1) * ((friction?.ring_force ?? 0) + jumping),
     drag: drag * x1 * x1,
   };
@@ -107,7 +107,9 @@ export function crankWeight(crank, gravity, theta) {
 
 /** What the combustion adds with these shares [N m]. */
 function burnt(combustion, shares) {
-  return combustion.reduce((sum, each, k) => sum + shares[k] * each, 0);
+  let sum = 0;
+  for (let k = 0; k < combustion.length; k++) sum += shares[k] * combustion[k];
+  return sum;
 }
 
 /** First and second derivatives of the rod's centre of mass in the cycle angle [m]. */

@@ -148,7 +148,7 @@ function pressed(gas, factor, shares) {
   return {
     ...gas,
     pressure: every(gas.pressure.map((cycle, k) => scaledCycle(cycle, factor, across(k)))),
-    combustion: every(gas.combustion.map((cycle) => scaledCycle(cycle, factor, 0))),
+    firing: every(gas.firing.map((cycle, k) => scaledCycle(cycle, factor, across(k)))),
     crank_end: every(gas.crank_end.map((cycle) => scaledCycle(cycle, factor, gauge))),
     sources: gas.sources.map((source) => scaledSource(source, factor, gauge)),
     fired: every(gas.fired),
