@@ -23,9 +23,15 @@ def pytest_collection_finish():
     gc.enable()
 
 
+# what it starts for all of its tests is started once where one process runs them all: those at the
+# end are shared out, those at the beginning are not
+FIRST = "test_sweep_workers.py"
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config, items):
     """What kills a mutant runs by default; what is collected is known before -m leaves some out."""
+    items.sort(key=lambda item: item.path.name != FIRST)
     config.stash[COLLECTED] = {item.nodeid for item in items}
     guards = quick_guards()
     for item in items:

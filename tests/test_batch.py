@@ -54,7 +54,11 @@ WITH_JOURNALS = [
 ]
 
 
-@pytest.mark.parametrize("scene", SHIPPED + WITH_JOURNALS, ids=lambda scene: scene.title[:20])
+@pytest.mark.parametrize(
+    "scene",
+    SHIPPED + WITH_JOURNALS,
+    ids=lambda scene: scene.title[:20] + " with journals" * (scene.bearings is not None),
+)
 def test_shipped_scenes_agree(scene):
     (rows,) = rows_of([scene])
     alone, message = by_hand(scene)

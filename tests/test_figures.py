@@ -171,7 +171,7 @@ def test_polar_diagrams_have_equal_axes_with_counter_clockwise_as_in_the_engine(
 def test_polar_diagram_marks_the_peak_and_angles_that_lie_apart_on_the_curve(one):
     (ax,) = main_bearing_figure(one).axes
     curve = ax.lines[0].get_xydata()
-    dots = np.array([line.get_xydata()[0] for line in ax.lines if line.get_marker() == "o"])
+    dots = np.concatenate([line.get_xydata() for line in ax.lines if line.get_marker() == "o"])
     marked = dict(zip(texts(ax), dots, strict=True))
     (peak,) = (label for label in marked if label.startswith("peak"))
     largest = int(np.argmax(np.hypot(*curve.T)))

@@ -5,6 +5,7 @@ What a command needs is imported when it runs, so that ``--help`` is there at on
 
 from __future__ import annotations
 
+import gc
 import sys
 from io import TextIOWrapper
 from typing import Annotated, Any
@@ -31,6 +32,9 @@ from crankmbs.cli.validate import validate
 from crankmbs.cli.work_precision import work_precision
 
 __all__ = ["app", "main"]
+
+# made until garbage is looked for, which then takes no time: a command makes few cycles of objects
+_OBJECTS = 100_000
 
 
 class _Commands(TyperGroup):
@@ -98,6 +102,7 @@ for command in (
 
 def main() -> None:
     """Entry point of the command ``crankmbs``."""
+    gc.set_threshold(_OBJECTS)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="replace")  # a title the terminal cannot show is no crash

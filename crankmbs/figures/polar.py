@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from crankmbs.figures.style import (
@@ -205,18 +206,22 @@ def _label(ax: Axes, marks: list[_Mark], at: float, side: float, span: float) ->
     ordered = sorted(marks, key=lambda mark: -mark.at.real)
     low, free = ax.get_ylim()
     half = 0.5 * _LINE * span
+    joints = []
     for k, mark in enumerate(ordered):
         below = 2.0 * half * (len(ordered) - 1 - k)
         height = max(min(mark.at.real, free - half), low + below + half)
         free = height - half
-        ax.plot([mark.at.imag, at], [mark.at.real, height], color="0.4", linewidth=0.7, zorder=3)
-        ax.plot(mark.at.imag, mark.at.real, "o", color="black", markersize=6, zorder=4)
+        joints.append([(mark.at.imag, mark.at.real), (at, height)])
+    ax.add_collection(LineCollection(joints, colors="0.4", linewidths=0.7, zorder=3))
+    spots = np.array([mark.at for mark in ordered], dtype=complex)
+    ax.plot(spots.imag, spots.real, "o", color="black", markersize=6, zorder=4)
+    for mark, (_, end) in zip(ordered, joints, strict=True):
         ax.text(
-            at,
-            height,
+            *end,
             f" {mark.label} ",
             ha="right" if side > 0.0 else "left",
             va="center",
             fontsize=12,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
+            in_layout=False,  # it stands inside the panel
         )

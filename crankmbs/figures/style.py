@@ -111,7 +111,7 @@ def drawn(figure: Figure) -> Callable[[Path], None]:
     if layout is not None:
         layout.execute(figure)
         figure.set_layout_engine("none")
-    canvas: Any = FigureCanvasAgg(figure)
+    canvas: Any = figure.canvas  # `panels` made it, and the layout has measured its texts with it
     canvas.draw()
     pixels, dpi = canvas.buffer_rgba(), figure.dpi
     return lambda file: imsave(file, pixels, format="png", dpi=dpi, pil_kwargs=_FAST)

@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from validation.oracles.arithmetic import Arithmetic, Array, Number
 from validation.oracles.taylor import derivative, evaluate
 
@@ -48,7 +50,7 @@ def first_exit(
     Looks at evenly spaced nodes and, so that no excursion between them is missed, at the turning
     points.
     """
-    nodes = arithmetic.array([until * k / NODES for k in range(NODES + 1)])
+    nodes = np.arange(NODES + 1) * until / NODES
     slope = derivative(series)
     steep = evaluate(slope, nodes)
     turning = [
@@ -56,15 +58,16 @@ def first_exit(
         for k in range(NODES)
         if steep[k] * steep[k + 1] < 0
     ]
-    nodes = arithmetic.array(sorted([*nodes, *turning]))
-    values = evaluate(series, nodes)
-    for k in range(1, len(nodes)):
-        for bound, upper in ((bounds[0], False), (bounds[1], True)):
-            if values[k] > bound if upper else values[k] < bound:
-                shifted = series.copy()
-                shifted[0] = series[0] - bound
-                return Exit(root(shifted, nodes[k - 1], nodes[k], arithmetic), bound, upper)
-    return None
+    nodes = np.array(sorted([*nodes, *turning]), dtype=nodes.dtype)
+    values = evaluate(series, nodes[1:])
+    outside = np.flatnonzero((values < bounds[0]) | (values > bounds[1]))
+    if not len(outside):
+        return None
+    k = outside[0]
+    upper = bool(values[k] > bounds[1])
+    shifted = series.copy()
+    shifted[0] = series[0] - bounds[upper]
+    return Exit(root(shifted, nodes[k], nodes[k + 1], arithmetic), bounds[upper], upper)
 
 
 def step_size(series: Array, arithmetic: Arithmetic) -> Number:

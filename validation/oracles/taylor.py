@@ -51,57 +51,57 @@ def motion_series(
     """
     bodies, cylinders = len(angle), (len(angle) - 1) // 2
     turn = arithmetic.zeros(order + 1, bodies)  # angles
-    speed = arithmetic.zeros(order, bodies)  # their rates
-    speed2, cosine, sine, cosine2, sine2 = (arithmetic.zeros(order, bodies) for _ in range(5))
-    entry = arithmetic.zeros(order, len(system.entry_row))
-    unknown = arithmetic.zeros(order, len(system.right))
-    local = arithmetic.zeros(order, cylinders)  # theta - origin and its powers, for the gas
-    square, cube = (arithmetic.zeros(order, cylinders) for _ in range(2))
-    turned, turned2, turned3 = (arithmetic.zeros(order, len(load.origin)) for _ in range(3))
+    speed, speed2 = (arithmetic.zeros(order, bodies) for _ in range(2))  # rates, their squares
+    trig = arithmetic.zeros(order, 2, bodies)  # cosines and sines
+    entry, factor = (arithmetic.zeros(order, len(system.entry_row)) for _ in range(2))
+    origin, tables = load.origin, len(load.origin)
+    if gas is not None:
+        origin = np.concatenate([origin, gas.origin])
+    local, square, cube = (arithmetic.zeros(order, len(origin)) for _ in range(3))  # its powers
 
     turn[0], speed[0] = angle, rate
-    cosine[0], sine[0] = arithmetic.cos(angle), arithmetic.sin(angle)
+    trig[0] = arithmetic.cos(angle), arithmetic.sin(angle)
     size = len(system.right)
     identity = arithmetic.zeros(size, size)
     identity[np.arange(size), np.arange(size)] += 1
-    inverse = solve(system.matrix(cosine[:1], sine[:1]), identity[None])[0]
+    inverse = solve(system.matrix(trig[:1, 0], trig[:1, 1]), identity[None])[0]
     accelerating = [ALPHA] * (1 + cylinders) + [
         ROD_SPIN + PER_CYLINDER * k for k in range(cylinders)
     ]
+    still, per = system.right * 0, load.cubics.T
 
     for k in range(order - 1):
         if k > 0:
-            cosine[k] = -_product(speed, sine, k - 1) / k
-            sine[k] = _product(speed, cosine, k - 1) / k
+            turned = _product(trig, speed[:, None], k - 1) / k
+            trig[k] = -turned[1], turned[0]
         speed2[k] = _product(speed, speed, k)
-        cosine2[k], sine2[k] = _product(cosine, speed2, k), _product(sine, speed2, k)
-        entry[k] = system.entries(cosine[k], sine[k])
+        entry[k] = system.entries(*trig[k])
 
-        right = system.right.copy() if k == 0 else system.right * 0
-        np.add.at(right, system.turn_row, system.turning(cosine2[k], sine2[k]))
+        right = system.right.copy() if k == 0 else still.copy()
+        np.add.at(right, system.turn_row, system.turning(*_product(trig, speed2[:, None], k)))
         torque = load.per_speed * speed[k, 0] + load.per_speed2 * speed2[k, 0]
         torque += load.constant if k == 0 else (load.per_time if k == 1 else 0)
-        turned[k] = turn[0, 0] - load.origin if k == 0 else turn[k, 0]
-        turned2[k] = _product(turned, turned, k)
-        turned3[k] = _product(turned, turned2, k)
-        per = load.cubics.T
-        torque += (per[1] * turned[k] + per[2] * turned2[k] + per[3] * turned3[k]).sum()
-        torque += per[0].sum() if k == 0 else 0
-        right[system.given_row] += torque
-        if gas is not None:
-            local[k] = turn[0, 0] - gas.origin if k == 0 else turn[k, 0]
+        if len(origin):
+            local[k] = turn[0, 0] - origin if k == 0 else turn[k, 0]
             square[k] = _product(local, local, k)
             cube[k] = _product(local, square, k)
+        if tables:
+            x, x2, x3 = (power[k, :tables] for power in (local, square, cube))
+            torque += (per[1] * x + per[2] * x2 + per[3] * x3).sum()
+            torque += per[0].sum() if k == 0 else 0
+        right[system.given_row] += torque
+        if gas is not None:
+            x, x2, x3 = (power[k, tables:] for power in (local, square, cube))
             terms = gas.coefficients
-            force = terms[:, 1] * local[k] + terms[:, 2] * square[k] + terms[:, 3] * cube[k]
+            force = terms[:, 1] * x + terms[:, 2] * x2 + terms[:, 3] * x3
             right[system.gas_row] -= force + terms[:, 0] if k == 0 else force
         if k > 0:
-            known = (entry[1 : k + 1] * unknown[k - 1 :: -1, system.entry_column]).sum(axis=0)
-            np.subtract.at(right, system.entry_row, known)
-        unknown[k] = inverse @ right
+            np.subtract.at(right, system.entry_row, _product(entry[1:], factor, k - 1))
+        unknown = inverse @ right
+        factor[k] = unknown[system.entry_column]
 
         turn[k + 1] = speed[k] / (k + 1)
-        speed[k + 1] = unknown[k, accelerating] / (k + 1)
+        speed[k + 1] = unknown[accelerating] / (k + 1)
     turn[order] = speed[order - 1] / order
     theta: Array = turn[:, 0]
     return theta
@@ -109,5 +109,5 @@ def motion_series(
 
 def _product(a: Array, b: Array, k: int) -> Array:
     """Coefficient k of the product of two series."""
-    result: Array = (a[: k + 1] * b[k::-1]).sum(axis=0)
+    result: Array = np.add.reduce(a[: k + 1] * b[k::-1])
     return result
