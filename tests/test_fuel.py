@@ -226,8 +226,8 @@ def test_a_polytrope_continues_the_file(e):
     ambient, r, l = FOUR.gas.ambient, 0.046, FOUR.rod.length
     begin = 2.0 * pi + np.arcsin(e / (l + r)) - 20 * pi / 180
     end = 3.0 * pi + np.arcsin(e / (l - r))
-    outside = [np.linspace(0.0, begin - 0.01, 200), np.linspace(end + 0.01, 12.5, 100)]
-    outside = np.concatenate(outside)
+    parts = [np.linspace(0.0, begin - 0.01, 200), np.linspace(end + 0.01, 12.5, 100)]
+    outside = np.concatenate(parts)
     np.testing.assert_allclose(motored(outside), fired(outside), rtol=1e-9, atol=1e-3)
     inside = np.linspace(begin, end - 1e-6, 100)
     stroke = np.sqrt((l + r) ** 2 - e**2) - np.sqrt((l - r) ** 2 - e**2)
