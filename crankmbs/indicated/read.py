@@ -220,8 +220,7 @@ def _speed(record: Record, firing: float, shape: Shape | None, name: str) -> Mea
     if record.rotation is None:
         return None
     top = 0.0 if shape is None else float(np.degrees(shape.top))
-    zero = firing - top - (360.0 if record.stroke == 4 else 0.0)
-    return speed_of(record.rotation, zero, name)
+    return speed_of(record.rotation, firing - top, name)
 
 
 def _read_as(sheet: Sheet, record: Record) -> str:

@@ -76,16 +76,23 @@ def motion_line(name: str) -> str:
     return f'speed = {{ file = "{name}", interpolation = "cubic" }}'
 
 
-def speed_of(rotation: Rotation, zero: float, source: str) -> MeasuredSpeed:
+def speed_of(rotation: Rotation, firing: float, source: str) -> MeasuredSpeed:
     """The speed of the mean cycle over one period.
 
-    zero : the wheel's angle [deg] at crank angle 0
+    firing : the wheel's angle [deg] of the firing dead centre, which a table of four strokes has at
+        360 degrees, one of two at 0, as those of pressures have
     """
+    zero = firing - _firing_place(rotation)
     angle = np.arange(0.0, rotation.period + 0.5 * _STEP, _STEP)
     speed = rotation.speed(angle + zero) * DEGREE
     error, half = (rotation.speed_error(half) * DEGREE for half in (False, True))
     table = Table(tuple(np.radians(angle).tolist()), tuple(speed.tolist()), source)
     return MeasuredSpeed(table, error, half, source, tuple(_words(rotation, speed, error, half)))
+
+
+def _firing_place(rotation: Rotation) -> float:
+    """The crank angle [deg] of the firing dead centre."""
+    return 360.0 if rotation.period > 700.0 else 0.0
 
 
 def _words(rotation: Rotation, speed: Array, error: float, half: float) -> Iterator[str]:
@@ -111,8 +118,8 @@ def read_speed(file: str | Path, wheel: Any = None, **options: Any) -> MeasuredS
         time
     wheel : "60-2", the teeth less the missing ones; "60-2 falling" for the falling edges
     stroke : 2 or 4, default 4: the speed comes again after one revolution or two
-    firing_tdc : where crank angle 0 lies, after the first edge after the first gap, "25 deg";
-        default 0
+    firing_tdc : the firing dead centre, after the first edge after the first gap, "25 deg"; in the
+        table it is at 360 degrees, with two strokes at 0; without, that edge is at 0
     columns : the column of the wheel, where others are beside it; index : of an encoder's mark;
         separator, decimal, skip : as in `Gas`
 
@@ -141,9 +148,18 @@ def read_speed(file: str | Path, wheel: Any = None, **options: Any) -> MeasuredS
         headings = headings_of(sheet.above, sheet.values.shape[1])
         at = time_column(headings, sheet, settings) or 0
         rotation = _rotation(sheet, headings, at, settings, settings.wheel)
-    zero = 0.0 if settings.firing_tdc is None else float(np.degrees(settings.firing_tdc))
-    measured = speed_of(rotation, zero, sheet.name)
-    about = f"crank angle 0 lies {zero:g} degrees after the first {rotation.wheel.edge} edge"
+    place, edge = _firing_place(rotation), f"the first {rotation.wheel.edge} edge"
+    if settings.firing_tdc is None:
+        firing, about = place, f"crank angle 0 is {edge}; firing_tdc is not given"
+    else:
+        firing = float(np.degrees(settings.firing_tdc))
+        about = f"crank angle {place:g} is the firing dead centre, {firing:g} degrees after {edge}"
+        if place:
+            about += (
+                "; teeth do not tell it from that of the gas exchange: if it is that one, "
+                f'firing_tdc="{(firing + 360.0) % 720.0:g} deg" is the other'
+            )
+    measured = speed_of(rotation, firing, sheet.name)
     times = several_words(headings, at, time=True)
     return replace(measured, sentences=(*times, *rotation.words(), *measured.sentences, about))
 
