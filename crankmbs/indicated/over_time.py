@@ -14,6 +14,7 @@ from crankmbs.indicated.channels import is_pressure, refuse_unit, several_words
 from crankmbs.indicated.options import Options
 from crankmbs.indicated.record import Channel, Record
 from crankmbs.indicated.rotation import Rotation, rotation_of
+from crankmbs.indicated.unlikely import cut_off_words
 from crankmbs.indicated.wheel import Wheel, edges, first_edges, marked_edges
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.headings import PRESSURE_UNITS, TIME_UNITS, Heading, by_name, is_time, pick
@@ -89,10 +90,11 @@ def record_over_time(
     delay = options.delay or 0.0
     begin, count, grid = _grid(rotation, time, delay)
     instants = rotation.time_at(begin + np.arange(count * len(grid)) * (grid[1] - grid[0])) + delay
-    channels = []
+    channels, cut = [], []
     for number, k in enumerate(columns.pressures, start=1):
         name, _, reference = headings[k]
         pascals = _pressure(sheet.values[:, k], headings[k], options)
+        cut += cut_off_words(name, -pascals if options.invert else pascals)
         values = CubicSpline(time, pascals)(instants).reshape(count, len(grid))
         _check_compression(values, name, instants)
         channels.append(Channel(name, "cycle", number, values, reference))
@@ -102,6 +104,7 @@ def record_over_time(
         + ("after the gap" if columns.mark is None else "at the index"),
         *several_words(headings, at, time=True),
         *rotation.words(),
+        *cut,
     ]
     if stroke is None and options.stroke is None:
         remarks.append(
