@@ -65,3 +65,76 @@ def fastest_at_the_first_edge():
     slow = 1.0 / (6000.0 * (1.0 + 0.02 * np.cos(np.radians(fine))))
     passed = np.concatenate([[0.0], np.cumsum(0.005 * (slow[1:] + slow[:-1]))])
     return np.interp(places, fine, passed)
+
+
+def pulses(drift=0.0, flank=0.0, pulses_of=360, step=1e-5, cycles=5):
+    """Time [s], an encoder's pulses and its mark, at 900 rpm that swings and rises by a share a
+    cycle; each pulse has flanks of some degrees."""
+    fine = np.arange(-130.0, 720.0 * cycles, 0.02)
+    speed = exact_of(fine) * 6.0 * (1.0 + drift * fine / 720.0)
+    passed = np.concatenate([[0.0], np.cumsum(0.01 * (1.0 / speed[1:] + 1.0 / speed[:-1]))])
+    time = np.arange(0.0, passed[-1], step)
+    angle = np.interp(time, passed, fine)
+    pitch = 360.0 / pulses_of
+    within = np.mod(angle + 0.25 * pitch, pitch) - 0.5 * pitch  # the high half about 0
+    edge = 0.25 * pitch - np.abs(within)
+    high = edge >= 0.0 if not flank else np.clip(0.5 + edge / flank, 0.0, 1.0)
+    return time, 5.0 * high, np.mod(angle + 0.4 * pitch, 360.0) < 0.8 * pitch
+
+
+def exact_of(angle):
+    """The steady speed [rpm] over the angle from the mark."""
+    swing = 0.02 * np.cos(np.radians(0.5 * angle)) + 0.01 * np.cos(np.radians(2.0 * angle + 40.0))
+    return 900.0 * (1.0 + swing)
+
+
+def read_pulses(tmp_path, pulses_of=360, **options):
+    time, signal, mark = pulses(pulses_of=pulses_of, **options)
+    rows = (f"{t:.6f};{s:.4f};{m:.0f}" for t, s, m in zip(time, signal, mark, strict=True))
+    path = written(tmp_path, "t [s];A [V];Z [V]\n" + "\n".join(rows))
+    return read_speed(path, str(pulses_of), index="Z", columns="A", firing_tdc="360 deg")
+
+
+def error_of(found):
+    """Largest error of the speed, and the one that is stated [rpm]."""
+    exact = exact_of(np.degrees(found.table.x))
+    return np.max(np.abs(np.array(found.table.y) / RPM - exact)), found.error / RPM
+
+
+@pytest.mark.parametrize("pulses_of", [180, 360, 720])
+def test_the_samples_of_a_digital_signal_are_in_the_error(tmp_path, pulses_of):
+    found = read_pulses(tmp_path, pulses_of)
+    apart, stated = error_of(found)
+    assert 0.2 < apart <= stated < 5.0
+    assert "and of a clock in steps of 10 us" in str(found)
+
+
+def test_a_signal_with_flanks_has_its_edges_between_samples(tmp_path):
+    found = read_pulses(tmp_path, 60, flank=0.5)
+    apart, stated = error_of(found)
+    assert apart <= stated < 0.5
+    assert "clock in steps" not in str(found)
+
+
+def test_a_clock_that_times_of_teeth_were_read_from(tmp_path):
+    record = Record(engine=FIRED, uneven=0.0, gap=(0.0, 0.0))
+    found = read_speed(of_teeth(tmp_path, record, digits=5), "60-2", firing_tdc="385 deg")
+    exact = record.speed(np.degrees(found.table.x) + 25.0) / 6.0
+    assert np.abs(np.array(found.table.y) / RPM - exact).max() <= found.error / RPM
+    assert "and of a clock in steps of 10 us" in str(found)
+
+
+@pytest.mark.parametrize("drift", [0.004, 0.0125, 0.1])
+def test_cycles_of_a_run_up_have_no_mean(tmp_path, drift):
+    record = read_pulses(tmp_path, 360, drift=drift)
+    (said,) = [each for each in record.sentences if each.startswith("warning:")]
+    assert "differ by up to" in said
+    assert "cut the record to cycles of one speed" in said
+    mean = np.mean(record.table.y[:-1]) / np.mean(exact_of(np.degrees(record.table.x[:-1])))
+    steady = mean * exact_of(np.degrees(record.table.x))
+    assert np.abs(record.table.y - steady).max() <= record.error
+    assert np.abs(record.table.y - steady).max() / RPM > 0.4 * drift * 900.0
+
+
+def test_steady_cycles_are_not_warned_of(tmp_path):
+    assert not any(each.startswith("warning:") for each in read_pulses(tmp_path).sentences)

@@ -15,7 +15,7 @@ from crankmbs.indicated.options import Options
 from crankmbs.indicated.record import Channel, Record
 from crankmbs.indicated.rotation import Rotation, rotation_of
 from crankmbs.indicated.unlikely import cut_off_words
-from crankmbs.indicated.wheel import Wheel, edges, first_edges, marked_edges
+from crankmbs.indicated.wheel import Wheel, edges, first_edges, marked_edges, tick_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.headings import PRESSURE_UNITS, TIME_UNITS, Heading, by_name, is_time, pick
 from crankmbs.scene.units import BAR
@@ -122,7 +122,7 @@ def turned(time: Array, signal: Array, marks: Array | None, wheel: Wheel, stroke
         first = first_edges(at, wheel)
     else:
         first = marked_edges(at, edges(time, marks, falling=wheel.falling), wheel)
-    return rotation_of(at, first, wheel, stroke)
+    return rotation_of(at, first, wheel, stroke, tick_of(time, signal))
 
 
 def clock(sheet: Sheet, heading: Heading, at: int) -> Array:

@@ -15,7 +15,7 @@ from crankmbs.indicated.channels import several_words
 from crankmbs.indicated.options import Options
 from crankmbs.indicated.over_time import clock, most_edges, time_column, turned
 from crankmbs.indicated.rotation import Rotation, rotation_of
-from crankmbs.indicated.wheel import Wheel, first_edges
+from crankmbs.indicated.wheel import Wheel, first_edges, tick_of_times
 from crankmbs.indicated.write import table_text
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.headings import TIME_UNITS, Heading, headings_of, pick
@@ -26,6 +26,7 @@ from crankmbs.storage.files import text_in_one_move
 __all__ = ["MeasuredSpeed", "motion_line", "read_speed", "speed_of"]
 
 _STEP = 3.0  # degrees: ten rows for the shortest wave that is fitted
+_FINE = 1e-8  # s: steps of a clock that are not worth a word
 _EVEN = 1.3  # times the median step: a record's samples, and no teeth with a gap
 
 
@@ -96,10 +97,14 @@ def _firing_place(rotation: Rotation) -> float:
 
 
 def _words(rotation: Rotation, speed: Array, error: float, half: float) -> Iterator[str]:
+    yield from rotation.differing()
+    clock = (
+        f" and of a clock in steps of {1e6 * rotation.tick:.3g} us" if rotation.tick > _FINE else ""
+    )
     yield (
         f"the speed of the mean cycle goes from {np.min(speed) / RPM:.5g} to "
         f"{np.max(speed) / RPM:.5g} rpm, by orders up to {rotation.orders} of a revolution, right "
-        f"to {error / RPM:.2g} rpm by the errors of the teeth"
+        f"to {error / RPM:.2g} rpm by the errors of the teeth{clock}"
     )
     if rotation.period > 700.0:
         swing = np.ptp(speed[: len(speed) // 2] - speed[len(speed) // 2 : -1]) / 2.0
@@ -173,7 +178,7 @@ def _rotation(
     steps = np.diff(sheet.values[:, at])
     if width == 1 or np.nanmax(steps) > _EVEN * np.nanmedian(steps):
         time = _teeth_times(sheet, headings[at], at)
-        return rotation_of(time, first_edges(time, wheel), wheel, stroke)
+        return rotation_of(time, first_edges(time, wheel), wheel, stroke, tick_of_times(time))
     index = None if options.index is None else pick(headings, options.index, "index")[0]
     columns = [k for k in range(width) if k not in (at, index)]
     if options.columns is not None:
