@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -26,6 +27,7 @@ _JUMP = 1.5  # times the usual step: a clock that jumps
 _STEPS = (0.05, 0.1, 0.2, 0.25, 0.5, 1.0, 2.0)  # degrees
 _FLAT = 1.0 * BAR  # a range below which nothing was compressed
 _WEAK = 0.2  # of the usual range of a cycle
+_SPEED = re.compile(r"\b(rpm|rad/s|deg/s)\b|([1u]/min|min\^?-1)")  # no signal of a wheel
 _VOLTS = {"v": 1.0, "mv": 1e-3}
 
 
@@ -166,7 +168,9 @@ def _columns(sheet: Sheet, headings: Sequence[Heading], at: int, options: Option
         named = [k for k in pick(headings, options.columns, "columns") if k in rest]
     else:
         named = [k for k in rest if is_pressure(headings[k], ("", *_VOLTS))]
-    others = [k for k in rest if k not in named]
+    others = [
+        k for k in rest if k not in named and not _SPEED.search(" ".join(headings[k][:2]).lower())
+    ]
     if not others:
         listed = ", ".join(shown(heading.name) for heading in headings)
         raise InputError(

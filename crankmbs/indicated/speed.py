@@ -18,7 +18,7 @@ from crankmbs.indicated.rotation import Rotation, rotation_of
 from crankmbs.indicated.wheel import Wheel, first_edges, tick_of_times
 from crankmbs.indicated.write import table_text
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.headings import TIME_UNITS, Heading, headings_of, pick
+from crankmbs.scene.headings import TIME_UNITS, Heading, headings_of, is_angle, pick
 from crankmbs.scene.tables import Table
 from crankmbs.scene.units import DEGREE, RPM
 from crankmbs.storage.files import text_in_one_move
@@ -151,7 +151,14 @@ def read_speed(file: str | Path, wheel: Any = None, **options: Any) -> MeasuredS
                 ('wheel="60-2", the teeth less the missing ones',),
             )
         headings = headings_of(sheet.above, sheet.values.shape[1])
-        at = time_column(headings, sheet, settings) or 0
+        time = time_column(headings, sheet, settings)
+        if time is None and any(map(is_angle, headings)):
+            raise InputError(
+                "the file is over the crank angle, and the speed is read from times of teeth, or "
+                "from the signal of a wheel over time; a speed over the crank angle is what "
+                "[motion] takes, as a file of crank_angle_deg,speed_rpm"
+            )
+        at = time or 0
         rotation = _rotation(sheet, headings, at, settings, settings.wheel)
     place, edge = _firing_place(rotation), f"the first {rotation.wheel.edge} edge"
     if settings.firing_tdc is None:

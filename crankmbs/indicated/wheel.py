@@ -186,6 +186,13 @@ def _check_revolutions(time: Array, ratio: Array, first: Index, wheel: Wheel) ->
             continue
         missing = b - a < wheel.edges or (b - a == wheel.edges and ratio[wide] >= _EVEN[1])
         fault = "are missing" if missing else "are doubled"
+        if missing and ratio[wide] < _EVEN[1]:
+            raise InputError(
+                f"from the gap at {time[a]:.6g} s to that at {time[b]:.6g} s the wheel shows "
+                f"{b - a} {wheel.edge} edges, and {wheel} has {wheel.edges}: at one of the two, "
+                "teeth are missing beside each other; cut the record before or after that, or "
+                "check wheel"
+            )
         k = wide if missing else narrow
         raise InputError(
             f"between {time[a]:.6g} and {time[b]:.6g} s the wheel shows {b - a} "
