@@ -126,7 +126,7 @@ MESSAGES = {
     ),
     "stroke 4 of half a cycle": (
         "file a.csv: the rows span 359 degrees from -180 to 179, and a cycle has 720; export "
-        "the whole cycle, gas exchange included"
+        "the whole cycle, gas exchange included; stroke=2 is for a two-stroke engine"
     ),
     "rows missing in every cycle": (
         "file a.csv, line 182: from 179 degrees the next row is 51 degrees on, where others are 1 "

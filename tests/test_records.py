@@ -287,7 +287,7 @@ def test_the_commands(tmp_path, monkeypatch):
     assert 'speed = { file = "gas_speed.csv", interpolation = "cubic" }' in result.stdout
     result = crankmbs_("speed", "record.txt", "--wheel", "60-2", "-o", "speed.csv")
     assert result.exit_code == 0, result.output
-    assert "crank angle 0 lies 0 degrees after the first rising edge" in result.stdout
+    assert "crank angle 0 is the first rising edge; --firing-tdc is not given" in result.stdout
     assert refused("speed", "record.txt").startswith("file record.txt: which wheel")
     (tmp_path / "scene.toml").write_text(SCENE)
     result = crankmbs_("run", "scene.toml", "--no-figures")

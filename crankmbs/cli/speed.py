@@ -28,7 +28,7 @@ def speed(
         int, Option(help="4: the speed comes again after two revolutions; 2: after one.")
     ] = 4,
     firing_tdc: Annotated[
-        str | None, Option(help="Crank angle 0, after the first edge after the first gap.")
+        str | None, Option(help="Firing dead centre, after the first edge after the first gap.")
     ] = None,
     columns: Annotated[str | None, Option(help="The column of the wheel.")] = None,
     index: Index = None,

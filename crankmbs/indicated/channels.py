@@ -219,9 +219,11 @@ def _factor(heading: Heading, options: Options) -> float:
     if heading.pressure is not None:
         return heading.pressure
     if options.unit is None:
+        lack = "no unit, neither in the name nor in a row below the names"
+        if heading.unit or re.search(r"\[.+\]|\(.+\)", heading.name):
+            lack = "a unit that is not known"
         raise UndecidedError(
-            f"the pressures of column {shown(heading.name)} have no unit, neither in the "
-            "name nor in a row below the names",
+            f"the pressures of column {shown(heading.name)} have {lack}",
             ('unit="bar"', f"another of kPa, Pa, MPa, psi{_and_reference(options)}"),
         )
     return PRESSURE_UNITS[options.unit]

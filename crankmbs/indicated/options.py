@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
@@ -67,6 +68,18 @@ def _unit(value: str) -> str:
     return unit
 
 
+def _at_most(degrees: float) -> AfterValidator:
+    """Angles [rad] up to so many degrees."""
+
+    def checked(angle: float) -> float:
+        came = math.degrees(angle)
+        if came > degrees + 1e-9:
+            raise InputError(f"must be at most {degrees:g} degrees; {came:.4g} came")
+        return angle
+
+    return AfterValidator(checked)
+
+
 def _cycles(value: Any) -> tuple[int, int | None] | None:
     """First and last cycle, None for the last there is; None for the mean."""
     text = str(value) if isinstance(value, int) and not isinstance(value, bool) else value
@@ -110,14 +123,14 @@ class Options:
     stroke: Literal[2, 4] | None = None
     reference: Annotated[Reference, BeforeValidator(_reference)] | None = None
     firing_tdc: Annotated[Float, si("angle")] | None = None
-    loss_angle: Annotated[Float, Ge(0), Le(0.05), si("angle")] | None = None
+    loss_angle: Annotated[Float, Ge(0), _at_most(3.0), si("angle")] | None = None
     compression_ratio: Annotated[Float, Gt(1), Le(100)] | None = None
     wheel: Annotated[Wheel, BeforeValidator(wheel_of)] | None = None
     index: Annotated[str, Strict()] | None = None
     sensor: Annotated[Sensor, BeforeValidator(sensor_of)] | None = None
     delay: Annotated[Float, Ge(-0.1), Le(0.1), si("time")] | None = None
     invert: Annotated[bool, Strict()] = False
-    smooth: Annotated[Float, Gt(0), Le(0.5), si("angle")] | None = None
+    smooth: Annotated[Float, Gt(0), _at_most(30.0), si("angle")] | None = None
     cycles: Annotated[tuple[int, int | None] | None, BeforeValidator(_cycles)] = None
 
     def sheet(self, file: str | Path, least: int = 2) -> Sheet:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -14,7 +15,8 @@ from crankmbs.indicated.channels import is_pressure, refuse_unit, several_words
 from crankmbs.indicated.options import Options
 from crankmbs.indicated.record import Channel, Record
 from crankmbs.indicated.rotation import Rotation, rotation_of
-from crankmbs.indicated.wheel import Wheel, edges, first_edges, marked_edges
+from crankmbs.indicated.unlikely import cut_off_words
+from crankmbs.indicated.wheel import Wheel, edges, first_edges, marked_edges, tick_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.headings import PRESSURE_UNITS, TIME_UNITS, Heading, by_name, is_time, pick
 from crankmbs.scene.units import BAR
@@ -25,6 +27,7 @@ _JUMP = 1.5  # times the usual step: a clock that jumps
 _STEPS = (0.05, 0.1, 0.2, 0.25, 0.5, 1.0, 2.0)  # degrees
 _FLAT = 1.0 * BAR  # a range below which nothing was compressed
 _WEAK = 0.2  # of the usual range of a cycle
+_SPEED = re.compile(r"\b(rpm|rad/s|deg/s)\b|([1u]/min|min\^?-1)")  # no signal of a wheel
 _VOLTS = {"v": 1.0, "mv": 1e-3}
 
 
@@ -89,10 +92,11 @@ def record_over_time(
     delay = options.delay or 0.0
     begin, count, grid = _grid(rotation, time, delay)
     instants = rotation.time_at(begin + np.arange(count * len(grid)) * (grid[1] - grid[0])) + delay
-    channels = []
+    channels, cut = [], []
     for number, k in enumerate(columns.pressures, start=1):
         name, _, reference = headings[k]
         pascals = _pressure(sheet.values[:, k], headings[k], options)
+        cut += cut_off_words(name, -pascals if options.invert else pascals)
         values = CubicSpline(time, pascals)(instants).reshape(count, len(grid))
         _check_compression(values, name, instants)
         channels.append(Channel(name, "cycle", number, values, reference))
@@ -102,6 +106,7 @@ def record_over_time(
         + ("after the gap" if columns.mark is None else "at the index"),
         *several_words(headings, at, time=True),
         *rotation.words(),
+        *cut,
     ]
     if stroke is None and options.stroke is None:
         remarks.append(
@@ -119,7 +124,7 @@ def turned(time: Array, signal: Array, marks: Array | None, wheel: Wheel, stroke
         first = first_edges(at, wheel)
     else:
         first = marked_edges(at, edges(time, marks, falling=wheel.falling), wheel)
-    return rotation_of(at, first, wheel, stroke)
+    return rotation_of(at, first, wheel, stroke, tick_of(time, signal))
 
 
 def clock(sheet: Sheet, heading: Heading, at: int) -> Array:
@@ -163,7 +168,9 @@ def _columns(sheet: Sheet, headings: Sequence[Heading], at: int, options: Option
         named = [k for k in pick(headings, options.columns, "columns") if k in rest]
     else:
         named = [k for k in rest if is_pressure(headings[k], ("", *_VOLTS))]
-    others = [k for k in rest if k not in named]
+    others = [
+        k for k in rest if k not in named and not _SPEED.search(" ".join(headings[k][:2]).lower())
+    ]
     if not others:
         listed = ", ".join(shown(heading.name) for heading in headings)
         raise InputError(

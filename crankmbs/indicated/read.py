@@ -31,6 +31,7 @@ from crankmbs.indicated.report import sentences_of
 from crankmbs.indicated.shape import Shape, differences, of_header, shape_of
 from crankmbs.indicated.speed import MeasuredSpeed, speed_of
 from crankmbs.indicated.tabulate import table_of
+from crankmbs.indicated.unlikely import cut_off_words, levels
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.headings import headings_of, is_angle
 from crankmbs.scene.scene import Scene
@@ -108,6 +109,7 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
     remarks += found.remarks
     for cylinder in cylinders:
         remarks += sentences_of(cylinder, shape, found.absolute, found.doubted)
+        remarks += levels(cylinder, record.stroke, found.absolute, found.doubted)
     if shape is None:
         remarks.append(
             "no stroke and rod length are known: without a scene no imep and no volumes are found"
@@ -220,8 +222,7 @@ def _speed(record: Record, firing: float, shape: Shape | None, name: str) -> Mea
     if record.rotation is None:
         return None
     top = 0.0 if shape is None else float(np.degrees(shape.top))
-    zero = firing - top - (360.0 if record.stroke == 4 else 0.0)
-    return speed_of(record.rotation, zero, name)
+    return speed_of(record.rotation, firing - top, name)
 
 
 def _read_as(sheet: Sheet, record: Record) -> str:
@@ -257,6 +258,8 @@ def _cut(
         values, words = bridged(record, channel)
         filled.append(sign * values)
         remarks += words
+        if record.rotation is None:
+            remarks += cut_off_words(channel.name, sign * values[~np.isnan(values)])
     means = [np.nanmean(values, axis=0) for values in filled]
     for channel, mean in zip(channels, means, strict=True):
         _check_sign(channel, mean, inverted=options.invert)

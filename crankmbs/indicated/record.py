@@ -272,10 +272,15 @@ def _period_of(grid: Array, known: int | None) -> float:
                 _STROKES,
             )
         return 180.0 * stroke
+    way_out = "export the whole cycle, gas exchange included"
+    if known == 4 and 0.0 <= 360.0 - span <= 2.0 * np.max(np.diff(grid), initial=0.0) + _NEAR:
+        if grid[0] >= 0.0:
+            way_out = "an angle must not begin again after a revolution, but go on to 720"
+        way_out += "; stroke=2 is for a two-stroke engine"
     rule = f"{180 * known:g}" if known else "360 or 720"
     raise InputError(
         f"the rows span {span:g} degrees from {grid[0]:g} to {grid[-1]:g}, and a cycle has {rule}; "
-        "export the whole cycle, gas exchange included"
+        f"{way_out}"
     )
 
 

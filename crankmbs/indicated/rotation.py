@@ -24,6 +24,9 @@ _SIGMAS = 3.0  # standard deviations in a stated error
 _FINEST = 12  # orders: a crank train's speed hardly has higher ones
 _TEETH = 8  # an order takes so many teeth, or their errors would pass for speed
 _GRID = np.arange(0.0, 720.0, 3.0)  # degrees
+# A mean cycle closes, and where each cycle begins slower than it ends it lacks half the difference
+# at either end; a series of finite order overshoots a jump by another 9 % of it.
+_OF_JUMP = 0.59
 
 
 class _Series(NamedTuple):
@@ -63,7 +66,10 @@ class Rotation(NamedTuple):
     wheel; period : of the cycle [deg]; cycles : whole ones; begin, end : their times [s]
     teeth : shape (edges,) [deg]: by how much each tooth stands behind its place, as far as that
         shows beyond the fitted orders; angles count from where the first edge is seen
-    orders : highest one that is fitted; angle_error : three standard deviations, largest [deg]
+    orders : highest one that is fitted; angle_error : three standard deviations, largest [deg], and
+        half a step of the clock
+    tick : step of the clock [s] by which the times of edges are known, 0 of a signal with flanks
+    speeds : of each cycle, shape (cycles,) [deg/s]
     angle, time : of all edges, shape (n,) [deg, s]
     """
 
@@ -75,6 +81,8 @@ class Rotation(NamedTuple):
     teeth: Array
     orders: int
     angle_error: float
+    tick: float
+    speeds: Array
     angle: Array
     time: Array
     series: tuple[_Series, ...]
@@ -118,22 +126,53 @@ class Rotation(NamedTuple):
     def speed_error(self, half: bool = False) -> float:
         """Largest error of `speed`, in degrees per second; of its half orders alone: that of the
         slopes, what higher orders may have, and the angle's error on the steepest part; in the
-        half orders of 1 / (1 + slope) that of the whole ones, too, times twice their swing."""
+        half orders of 1 / (1 + slope) that of the whole ones, too, times twice their swing.
+
+        Besides, that of the clock's steps: they are a sawtooth, which in the orders of the fit has
+        a slope of orders times tick over pi at most; and of a speed that differs from cycle to
+        cycle, where the mean one closes."""
+        return self._steady_error(half) + _OF_JUMP * self.jump * (0.5 if half else 1.0)
+
+    @property
+    def jump(self) -> float:
+        """Largest difference [deg/s] between the mean speeds of a cycle and the next."""
+        return float(np.max(np.abs(np.diff(self.speeds))))
+
+    def differing(self) -> list[str]:
+        """A warning where the cycles' speeds differ by more than the error of a steady mean."""
+        if np.ptp(self.speeds) <= self._steady_error(half=False):
+            return []
+        first, last, low, high = (
+            each / 6.0 for each in (*self.speeds[[0, -1]], np.min(self.speeds), np.max(self.speeds))
+        )
+        return [
+            f"warning: the mean speeds of the cycles lie from {low:.5g} to {high:.5g} rpm, "
+            f"{first:.5g} of the first and {last:.5g} of the last, and differ by up to "
+            f"{self.jump / 6.0:.3g} rpm from one to the next: the mean cycle is one of a steady "
+            f"speed, and off by {_OF_JUMP * self.jump / 6.0:.2g} rpm where it closes; cut the "
+            "record to cycles of one speed, or give [motion] a ramp or the speed over time"
+        ]
+
+    def _steady_error(self, half: bool) -> float:
         parts = self.series[1:] if half else self.series
         variance = sum(each.variance(each.basis(_GRID, slope=True)) for each in parts)
         relative = _SIGMAS * np.sqrt(np.max(variance)) + sum(each.tail for each in parts)
+        relative += self.orders * self.mean_speed * self.tick / np.pi
         swing, mixed = self.speed(_GRID), 0.0
         if half:
             swing = 0.5 * (swing - np.roll(swing, len(_GRID) // 2))
-            mixed = 2.0 * np.max(np.abs(swing)) / self.mean_speed * self.speed_error()
+            mixed = 2.0 * np.max(np.abs(swing)) / self.mean_speed * self._steady_error(half=False)
         steepest = np.max(np.abs(np.gradient(swing, _GRID)))
         return float(self.mean_speed * np.radians(relative) + steepest * self.angle_error + mixed)
 
 
-def rotation_of(time: Array, first: Index, wheel: Wheel, stroke: int) -> Rotation:
+def rotation_of(
+    time: Array, first: Index, wheel: Wheel, stroke: int, tick: float = 0.0
+) -> Rotation:
     """The rotation from the times [s] of a wheel's edges.
 
-    first : the places of the first edges after the gaps; stroke : 2 or 4
+    first : the places of the first edges after the gaps; stroke : 2 or 4; tick : step [s] of the
+        clock that has these times
 
     Raises
     ------
@@ -171,6 +210,7 @@ def rotation_of(time: Array, first: Index, wheel: Wheel, stroke: int) -> Rotatio
     number, turn = (every - first[0]) % m, (every - first[0]) // m
     bases = [each.basis(_GRID) - each.basis(np.zeros(1)) for each in series]
     variance = sum(each.variance(basis) for each, basis in zip(series, bases, strict=True))
+    speeds = period / np.diff(begins)
     return Rotation(
         wheel=wheel,
         period=period,
@@ -179,7 +219,9 @@ def rotation_of(time: Array, first: Index, wheel: Wheel, stroke: int) -> Rotatio
         end=float(begins[-1]),
         teeth=teeth,
         orders=most,
-        angle_error=float(_SIGMAS * np.sqrt(np.max(variance))),
+        angle_error=float(_SIGMAS * np.sqrt(np.max(variance)) + 0.5 * tick * np.mean(speeds)),
+        tick=tick,
+        speeds=speeds,
         angle=place[number] + teeth[number] - teeth[0] + 360.0 * turn,
         time=time[every],
         series=tuple(series),

@@ -15,10 +15,10 @@ from crankmbs.indicated.channels import several_words
 from crankmbs.indicated.options import Options
 from crankmbs.indicated.over_time import clock, most_edges, time_column, turned
 from crankmbs.indicated.rotation import Rotation, rotation_of
-from crankmbs.indicated.wheel import Wheel, first_edges
+from crankmbs.indicated.wheel import Wheel, first_edges, tick_of_times
 from crankmbs.indicated.write import table_text
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.headings import TIME_UNITS, Heading, headings_of, pick
+from crankmbs.scene.headings import TIME_UNITS, Heading, headings_of, is_angle, pick
 from crankmbs.scene.tables import Table
 from crankmbs.scene.units import DEGREE, RPM
 from crankmbs.storage.files import text_in_one_move
@@ -26,6 +26,7 @@ from crankmbs.storage.files import text_in_one_move
 __all__ = ["MeasuredSpeed", "motion_line", "read_speed", "speed_of"]
 
 _STEP = 3.0  # degrees: ten rows for the shortest wave that is fitted
+_FINE = 1e-8  # s: steps of a clock that are not worth a word
 _EVEN = 1.3  # times the median step: a record's samples, and no teeth with a gap
 
 
@@ -76,11 +77,13 @@ def motion_line(name: str) -> str:
     return f'speed = {{ file = "{name}", interpolation = "cubic" }}'
 
 
-def speed_of(rotation: Rotation, zero: float, source: str) -> MeasuredSpeed:
+def speed_of(rotation: Rotation, firing: float, source: str) -> MeasuredSpeed:
     """The speed of the mean cycle over one period.
 
-    zero : the wheel's angle [deg] at crank angle 0
+    firing : the wheel's angle [deg] of the firing dead centre, which a table of four strokes has at
+        360 degrees, one of two at 0, as those of pressures have
     """
+    zero = firing - _firing_place(rotation)
     angle = np.arange(0.0, rotation.period + 0.5 * _STEP, _STEP)
     speed = rotation.speed(angle + zero) * DEGREE
     error, half = (rotation.speed_error(half) * DEGREE for half in (False, True))
@@ -88,11 +91,20 @@ def speed_of(rotation: Rotation, zero: float, source: str) -> MeasuredSpeed:
     return MeasuredSpeed(table, error, half, source, tuple(_words(rotation, speed, error, half)))
 
 
+def _firing_place(rotation: Rotation) -> float:
+    """The crank angle [deg] of the firing dead centre."""
+    return 360.0 if rotation.period > 700.0 else 0.0
+
+
 def _words(rotation: Rotation, speed: Array, error: float, half: float) -> Iterator[str]:
+    yield from rotation.differing()
+    clock = (
+        f" and of a clock in steps of {1e6 * rotation.tick:.3g} us" if rotation.tick > _FINE else ""
+    )
     yield (
         f"the speed of the mean cycle goes from {np.min(speed) / RPM:.5g} to "
         f"{np.max(speed) / RPM:.5g} rpm, by orders up to {rotation.orders} of a revolution, right "
-        f"to {error / RPM:.2g} rpm by the errors of the teeth"
+        f"to {error / RPM:.2g} rpm by the errors of the teeth{clock}"
     )
     if rotation.period > 700.0:
         swing = np.ptp(speed[: len(speed) // 2] - speed[len(speed) // 2 : -1]) / 2.0
@@ -111,8 +123,8 @@ def read_speed(file: str | Path, wheel: Any = None, **options: Any) -> MeasuredS
         time
     wheel : "60-2", the teeth less the missing ones; "60-2 falling" for the falling edges
     stroke : 2 or 4, default 4: the speed comes again after one revolution or two
-    firing_tdc : where crank angle 0 lies, after the first edge after the first gap, "25 deg";
-        default 0
+    firing_tdc : the firing dead centre, after the first edge after the first gap, "25 deg"; in the
+        table it is at 360 degrees, with two strokes at 0; without, that edge is at 0
     columns : the column of the wheel, where others are beside it; index : of an encoder's mark;
         separator, decimal, skip : as in `Gas`
 
@@ -139,11 +151,27 @@ def read_speed(file: str | Path, wheel: Any = None, **options: Any) -> MeasuredS
                 ('wheel="60-2", the teeth less the missing ones',),
             )
         headings = headings_of(sheet.above, sheet.values.shape[1])
-        at = time_column(headings, sheet, settings) or 0
+        time = time_column(headings, sheet, settings)
+        if time is None and any(map(is_angle, headings)):
+            raise InputError(
+                "the file is over the crank angle, and the speed is read from times of teeth, or "
+                "from the signal of a wheel over time; a speed over the crank angle is what "
+                "[motion] takes, as a file of crank_angle_deg,speed_rpm"
+            )
+        at = time or 0
         rotation = _rotation(sheet, headings, at, settings, settings.wheel)
-    zero = 0.0 if settings.firing_tdc is None else float(np.degrees(settings.firing_tdc))
-    measured = speed_of(rotation, zero, sheet.name)
-    about = f"crank angle 0 lies {zero:g} degrees after the first {rotation.wheel.edge} edge"
+    place, edge = _firing_place(rotation), f"the first {rotation.wheel.edge} edge"
+    if settings.firing_tdc is None:
+        firing, about = place, f"crank angle 0 is {edge}; firing_tdc is not given"
+    else:
+        firing = float(np.degrees(settings.firing_tdc))
+        about = f"crank angle {place:g} is the firing dead centre, {firing:g} degrees after {edge}"
+        if place:
+            about += (
+                "; teeth do not tell it from that of the gas exchange: if it is that one, "
+                f'firing_tdc="{(firing + 360.0) % 720.0:g} deg" is the other'
+            )
+    measured = speed_of(rotation, firing, sheet.name)
     times = several_words(headings, at, time=True)
     return replace(measured, sentences=(*times, *rotation.words(), *measured.sentences, about))
 
@@ -157,7 +185,7 @@ def _rotation(
     steps = np.diff(sheet.values[:, at])
     if width == 1 or np.nanmax(steps) > _EVEN * np.nanmedian(steps):
         time = _teeth_times(sheet, headings[at], at)
-        return rotation_of(time, first_edges(time, wheel), wheel, stroke)
+        return rotation_of(time, first_edges(time, wheel), wheel, stroke, tick_of_times(time))
     index = None if options.index is None else pick(headings, options.index, "index")[0]
     columns = [k for k in range(width) if k not in (at, index)]
     if options.columns is not None:

@@ -12,11 +12,12 @@ from scipy.ndimage import median_filter
 from crankmbs.errors import InputError, shown
 from crankmbs.numerics.arrays import Array, Index
 
-__all__ = ["Wheel", "edges", "first_edges", "marked_edges", "wheel_of"]
+__all__ = ["Wheel", "edges", "first_edges", "marked_edges", "tick_of", "tick_of_times", "wheel_of"]
 
 _FORM = re.compile(r"([1-9][0-9]*)(?:\s*-\s*([1-9][0-9]*))?(?:\s+(rising|falling))?")
 _BAND = 0.15  # of the range: a signal must pass so far beyond its middle to have an edge
 _NEIGHBOURS = 7  # intervals whose median is the pitch
+_DIGITAL = 0.75  # of the range within one sample: a pulse without flanks
 _EVEN = (0.55, 1.6)  # of the pitch: intervals from tooth to tooth, also of uneven teeth
 
 
@@ -90,6 +91,33 @@ def edges(time: Array, signal: Array, *, falling: bool = False) -> Array:
     return time[k - 1] + share * (time[k] - time[k - 1])
 
 
+def tick_of(time: Array, signal: Array) -> float:
+    """The step [s] by which a signal's edges are known: that of its samples where a pulse goes from
+    low to high within one of them, 0 where its flanks have samples.
+
+    >>> tick_of(np.arange(6.0), np.array([0.0, 0.0, 5.0, 5.0, 0.0, 0.0]))
+    1.0
+    """
+    low, high = np.quantile(signal, [0.1, 0.9])
+    rises = np.diff(signal)
+    middle = 0.5 * (low + high)
+    crossing = rises[(signal[:-1] < middle) & (signal[1:] >= middle)]
+    digital = crossing.size > 0 and np.median(crossing) > _DIGITAL * (high - low)
+    return float(np.median(np.diff(time))) if digital else 0.0
+
+
+def tick_of_times(time: Array) -> float:
+    """The step [s] of the clock that the times of edges were read from: the least by which the
+    intervals between them differ, beyond the rounding of numbers.
+
+    >>> round(tick_of_times(np.array([0.0, 0.25, 0.75, 1.0, 1.75, 2.0])), 9)
+    0.25
+    """
+    steps = np.diff(np.sort(np.diff(time)))
+    apart = steps[steps > 8.0 * np.spacing(np.max(np.abs(time)))]
+    return float(np.min(apart)) if apart.size else 0.0
+
+
 def first_edges(time: Array, wheel: Wheel) -> Index:
     """The places of the first edges after the gaps.
 
@@ -158,6 +186,13 @@ def _check_revolutions(time: Array, ratio: Array, first: Index, wheel: Wheel) ->
             continue
         missing = b - a < wheel.edges or (b - a == wheel.edges and ratio[wide] >= _EVEN[1])
         fault = "are missing" if missing else "are doubled"
+        if missing and ratio[wide] < _EVEN[1]:
+            raise InputError(
+                f"from the gap at {time[a]:.6g} s to that at {time[b]:.6g} s the wheel shows "
+                f"{b - a} {wheel.edge} edges, and {wheel} has {wheel.edges}: at one of the two, "
+                "teeth are missing beside each other; cut the record before or after that, or "
+                "check wheel"
+            )
         k = wide if missing else narrow
         raise InputError(
             f"between {time[a]:.6g} and {time[b]:.6g} s the wheel shows {b - a} "

@@ -44,7 +44,7 @@ def write_table(indicated: Indicated, path: Path) -> Path:
     table = indicated.table
     rows = np.atleast_2d(table.y)
     if indicated.absolute:
-        _refuse_negative(rows, np.degrees(table.x), path)
+        _refuse_negative(rows, np.degrees(table.x), path, mean=indicated.cycles == "mean")
     names = ["pressure_bar"]
     if isinstance(table, CylinderTable):
         names = [f"pressure_bar_{k}" for k in range(1, len(rows) + 1)]
@@ -74,15 +74,16 @@ def table_text(
     return stream.getvalue()
 
 
-def _refuse_negative(rows: Array, degrees: Array, path: Path) -> None:
+def _refuse_negative(rows: Array, degrees: Array, path: Path, *, mean: bool) -> None:
     cylinder, row = np.unravel_index(np.argmin(rows), rows.shape)
     lowest = rows[cylinder, row]
     if lowest >= 0.0:
         return
+    others = "" if mean else 'cycles="mean", '
     raise InputError(
         f"{path.name}: the absolute pressure of the table's column {cylinder + 1} falls to "
         f"{lowest / BAR:.3g} bar at a crank angle of {degrees[row]:.6g} degrees, and "
-        'none is below zero; where the signal has spikes take cycles="mean", other cycles or '
+        f"none is below zero; where the signal has spikes take {others}other cycles or "
         'smooth="3 deg", where its zero is off another reference, such as '
         'reference="inlet 1.0 bar"'
     )

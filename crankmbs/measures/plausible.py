@@ -17,6 +17,7 @@ from crankmbs.measures.plausible_tables import gaps, scatter
 from crankmbs.measures.room import bores_overlap, shells_overlap
 from crankmbs.mechanics.pressure import PeriodicPressure, pressures_of
 from crankmbs.scene.gas import CONSTANT, Gas
+from crankmbs.scene.levels import unlikely_peak
 from crankmbs.scene.parts import RunningGear
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import Table
@@ -281,10 +282,6 @@ def _pressures(scene: Scene) -> Iterator[str]:
             )
 
 
-# Engines fire below 300 bar. A four-stroke engine that is only turned over, throttled, compresses
-# to several bar.
-_HIGHEST = 350.0 * BAR
-_LOWEST_FOUR_STROKE = 2.0 * BAR
 # Engines peak 5 to 20 degrees behind the firing dead centre, late diesels 30; a compressor delivers
 # up to it: what counts is the nearest angle with all but 2 % of the peak.
 _FAR = math.radians(45.0)
@@ -303,16 +300,7 @@ def _peak(scene: Scene) -> Iterator[str]:
 
 def _peak_of(gas: Gas, pressure: PeriodicPressure) -> Iterator[str]:
     angle, peak = pressure.peak
-    if peak > _HIGHEST:
-        yield (
-            f"the pressure peaks at {peak / BAR:.4g} bar, and engines fire below 300; check "
-            "its unit, such as MPa for bar"
-        )
-    if gas.stroke == 4 and peak < _LOWEST_FOUR_STROKE:
-        yield (
-            f"the pressure of a four-stroke cycle peaks at {peak / BAR:.3g} bar above "
-            "ambient; even turned over it reaches several bar; check its unit"
-        )
+    yield from unlikely_peak(peak, gas.stroke)
     fired = gas.period / 2.0 if gas.stroke == 4 else 0.0
     around = np.add.outer(
         np.arange(fired, pressure.period, gas.period), np.linspace(-_FAR, _FAR, 361)

@@ -50,6 +50,7 @@ _SPELT = {
     "kg/cm2": "kgf/cm^2",
     "kg/cm^2": "kgf/cm^2",
     "kp/cm2": "kgf/cm^2",
+    "kp/cm^2": "kgf/cm^2",
     "n/mm2": "n/mm^2",
     "bars": "bar",
 }
@@ -71,7 +72,7 @@ _ANGLE_NAME = re.compile(
     r"|theta|alpha|phi|α|φ|ca[ _]?deg|deg[ _]?ca|degca|x[ _]?axis)([ _][ab]?tdc\w*)?"
 )
 _TIME_NAME = re.compile(r"time|zeit|t|timestamp|time[ _]?stamp|abs(olute)?[ _]?time|temps")
-_BRACKETED = re.compile(r"(.*?)\s*[\[(]([^\])]*(?:\([ag]\))?)[\])]\s*([ _.#-].*)?")
+_BRACKETED = re.compile(r"(.*?)\s*[\[(]([^\])]*(?:\([ag](?:bs|auge)?\))?)[\])]\s*([ _.#-].*)?")
 _AFTER = re.compile(r"(.+?)(?:\s*/\s*|,\s*|\s+in\s+)(\S.*)")  # "p/bar", "p, bar", "p in bar"
 _OF_TDC = re.compile(r"\s*[ab]?tdcf?$")
 _NUMBERED_UNIT = re.compile(r"(.+?)_(bar|kPa|Pa|MPa|psi|kgf_cm2|deg|rad)((?:_[1-9][0-9]*)?)")
@@ -256,7 +257,7 @@ def _given(row: Sequence[str]) -> int:
 
 def _unit(text: str) -> tuple[str, str]:
     """A unit in small letters and common spelling, and the reference that it names."""
-    unit = " ".join(text.strip("[]() \t").lower().split())
+    unit = " ".join(text.strip("[]() \t").lower().replace("²", "^2").split())
     unit = _OF_TDC.sub("", unit)
     match = _REFERENCED.fullmatch(unit)
     if match:
