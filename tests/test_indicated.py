@@ -377,3 +377,22 @@ def test_an_inverted_signal_is_turned_over_on_request(tmp_path):
     assert there.cylinders[0].peaks[0] / 1e5 == pytest.approx(
         pressure_of(FIRED, ANGLE).max(), abs=1e-3
     )
+
+
+@pytest.mark.parametrize("dead_centre", [-6.0, 0.0, 6.0])
+def test_a_level_by_polytrope_leaves_the_dead_centre_open(tmp_path, dead_centre):
+    """The level takes up what a wrong dead centre does to the compression."""
+    values = cycles(FIRED, ANGLE, 5, noise=0.02, dead_centre=dead_centre)
+    there = found(tmp_path, columns_of_cycles(ANGLE, values), reference="polytrope 1.335")
+    cylinder = there.cylinders[0]
+    assert cylinder.dead_centre is None
+    assert cylinder.imep_within is None
+    said = str(there)
+    assert "may be right" not in said
+    assert (
+        "the dead centre is not checked: the polytrope that gives the pressures their level fits a "
+        "wrong dead centre as well"
+    ) in said
+    error = np.mean(cylinder.imep) / 1e5 - mean_effective_pressure(FIRED)
+    assert -cylinder.imep_a_degree * dead_centre / 1e5 == pytest.approx(error, abs=0.15)
+    assert f"; one degree later changes the imep by {cylinder.imep_a_degree / 1e5:+.2g}" in said

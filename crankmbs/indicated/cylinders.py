@@ -27,9 +27,12 @@ _FOURTH = math.sqrt(70.0)  # standard deviations of a row in that of its fourth 
 
 
 def cylinder_of(
-    cycles: Cycles, added: Array, shape: Shape | None, options: Options, absolute: bool
+    cycles: Cycles, added: Array, shape: Shape | None, options: Options, level: bool
 ) -> CylinderPressure:
-    """The cylinder from its cycles and what is added to each, shape (cycles,) [Pa]."""
+    """The cylinder from its cycles and what is added to each, shape (cycles,) [Pa].
+
+    level : whether the pressures are absolute, and not by their own compression
+    """
     phi, period = cycles.phi, cycles.period
     before = cycles.pressure + added[:, None]
     mean, rough = np.mean(before, axis=0), _noise(phi, before)
@@ -43,7 +46,7 @@ def cylinder_of(
         loss = None if options.loss_angle is None else math.degrees(options.loss_angle)
         centre = motored_dead_centre(phi, mean, rough / math.sqrt(len(before)), loss)
     else:
-        centre = fired_dead_centre(phi, mean, shape if absolute else None)
+        centre = fired_dead_centre(phi, mean, shape if level else None)
     return CylinderPressure(
         number=cycles.channel.cylinder,
         name=cycles.channel.name,
@@ -59,6 +62,7 @@ def cylinder_of(
         closure=float(np.median(_closure(pressure))),
         moved=moved,
         imep_within=_within(phi, pressure, shape, period, centre),
+        imep_a_degree=_a_degree(phi, pressure, shape, period),
     )
 
 
@@ -73,6 +77,17 @@ def _within(
         for at in (centre.low, centre.high)
     )
     return low, high
+
+
+def _a_degree(phi: Array, pressure: Array, shape: Shape | None, period: float) -> float | None:
+    """By how much the mean imep [Pa] changes with a dead centre one degree later."""
+    if shape is None:
+        return None
+    before, behind = (
+        float(np.mean(_mean_effective_pressure(phi - at, pressure, shape, period)))
+        for at in (-0.5, 0.5)
+    )
+    return behind - before
 
 
 def _moved(

@@ -13,7 +13,7 @@ from crankmbs.delimited.dialect import named
 from crankmbs.errors import InputError, UndecidedError
 from crankmbs.indicated.cylinders import cylinder_of
 from crankmbs.indicated.dead_centre import DeadCentre, fired_dead_centre
-from crankmbs.indicated.findings import CylinderPressure, Indicated
+from crankmbs.indicated.findings import CylinderPressure, Indicated, Level
 from crankmbs.indicated.firing import (
     cut_cycles,
     firing_angle,
@@ -107,7 +107,7 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
     speed = _speed(record, cylinders[0].firing, shape, sheet.name)
     remarks += found.remarks
     for cylinder in cylinders:
-        remarks += sentences_of(cylinder, shape, found.absolute, found.doubted)
+        remarks += sentences_of(cylinder, shape, found.level, found.doubted)
     if shape is None:
         remarks.append(
             "no stroke and rod length are known: without a scene no imep and no volumes are found"
@@ -115,7 +115,7 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
     return Indicated(
         source=sheet.name,
         stroke=record.stroke,
-        absolute=found.absolute,
+        absolute=found.level.absolute,
         aligned=len(cylinders) > 1 and len({each.firing for each in cylinders}) == 1,
         cycles="sequence" if table.x[-1] - table.x[0] > np.radians(record.period) else "mean",
         cylinders=cylinders,
@@ -127,12 +127,12 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
 
 
 class _Found(NamedTuple):
-    """The cylinders, and their cycles before these were referenced; whether their pressures are
-    absolute; what their compression speaks against, else nothing; what was done."""
+    """The cylinders, and their cycles before these were referenced; what their pressures are
+    measured from; what their compression speaks against, else nothing; what was done."""
 
     cylinders: tuple[CylinderPressure, ...]
     cut: list[Cycles]
-    absolute: bool
+    level: Level
     doubted: str
     remarks: list[str]
 
@@ -165,14 +165,15 @@ def _cylinders(
         remarks.append(_half_words(cut[0].channel, *halves))
         against = ""  # the mean of compressions and gas exchanges is no compression
     why += f", though {against}" if against else ""
-    cylinders, absolute = [], True
+    cylinders, level = [], Level(absolute=True, pegged=reference.kind == "polytrope")
     for cycles in cut:
         added, absolute, words = refer(cycles, reference, shape)
+        level = level._replace(absolute=absolute)
         look = "warning: " if against else ""
         remarks.append(f"{look}cylinder {cycles.channel.cylinder}: {words} ({why})")
-        cylinders.append(cylinder_of(cycles, added, shape, options, absolute))
+        cylinders.append(cylinder_of(cycles, added, shape, options, level.shows_dead_centre))
     doubted = "the stroke" if halves else "the reference" if against else ""
-    return _Found(tuple(cylinders), cut, absolute, doubted, remarks)
+    return _Found(tuple(cylinders), cut, level, doubted, remarks)
 
 
 def _by_pressure(
@@ -186,7 +187,7 @@ def _by_pressure(
     """
     for _ in range(_ROUNDS):
         found = _cylinders(record, options, scene, shape, first)
-        centre = _centre(found.cylinders[0], shape if found.absolute else None)
+        centre = _centre(found.cylinders[0], shape if found.level.shows_dead_centre else None)
         if centre is None or not _PEAKS[0] < centre.peak < _PEAKS[1]:
             break
         if abs(centre.middle) < _SETTLED:

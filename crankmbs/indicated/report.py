@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from crankmbs.indicated.dead_centre import DeadCentre
-from crankmbs.indicated.findings import CylinderPressure
+from crankmbs.indicated.findings import CylinderPressure, Level
 from crankmbs.indicated.shape import Shape
 from crankmbs.scene.units import BAR
 
@@ -21,7 +21,7 @@ _MOVED = 0.01  # of the range: how far a cycle may miss the next one's beginning
 
 
 def sentences_of(
-    cylinder: CylinderPressure, shape: Shape | None, referenced: bool, doubted: str
+    cylinder: CylinderPressure, shape: Shape | None, level: Level, doubted: str
 ) -> Iterator[str]:
     """The sentences of one cylinder.
 
@@ -32,8 +32,8 @@ def sentences_of(
     if len(cylinder.pressure) > 1:
         yield _scatter(cylinder, name)
     yield _noise(cylinder, name)
-    yield from _dead_centre(cylinder, name, shape, doubted)
-    yield from _suspicions(cylinder, name, referenced)
+    yield from _dead_centre(cylinder, name, shape, level, doubted)
+    yield from _suspicions(cylinder, name, level.absolute)
     if cylinder.moved is not None:
         peak, angle, imep = cylinder.moved
         work = "" if math.isnan(imep) else f" and the imep by {imep / BAR:+.2g} bar"
@@ -91,17 +91,11 @@ def _stands(centre: DeadCentre, doubted: str) -> bool:
 
 
 def _dead_centre(
-    cylinder: CylinderPressure, name: str, shape: Shape | None, doubted: str
+    cylinder: CylinderPressure, name: str, shape: Shape | None, level: Level, doubted: str
 ) -> Iterator[str]:
     centre = cylinder.dead_centre
     if centre is None:
-        needs = "a reference that makes its pressures absolute"
-        if shape is None or shape.ratio is None:
-            needs = "stroke, rod length and compression_ratio"
-        yield (
-            f"{name}: the dead centre is not checked: in a fired cycle the compression shows it, "
-            f"which takes {needs}"
-        )
+        yield f"{name}: the dead centre is not checked: {_unchecked(cylinder, shape, level)}"
         return
     if not _stands(centre, doubted):
         yield (
@@ -133,6 +127,23 @@ def _dead_centre(
         f"warning: {basis}; {place}; the file's is kept, "
         f'firing_tdc="{angle:.2f} deg" takes the one found'
     )
+
+
+def _unchecked(cylinder: CylinderPressure, shape: Shape | None, level: Level) -> str:
+    """Why a dead centre is not checked, and what it is worth."""
+    costs = ""
+    if cylinder.imep_a_degree is not None:
+        costs = f"; one degree later changes the imep by {cylinder.imep_a_degree / BAR:+.2g} bar"
+    if level.pegged and level.absolute and shape is not None and shape.ratio is not None:
+        return (
+            "the polytrope that gives the pressures their level fits a wrong dead centre as well, "
+            "with another level; a motored record, or a reference that does not rest on the "
+            f"compression, shows it{costs}"
+        )
+    needs = "a reference that makes its pressures absolute"
+    if shape is None or shape.ratio is None:
+        needs = "stroke, rod length and compression_ratio"
+    return f"in a fired cycle the compression shows it, which takes {needs}{costs}"
 
 
 def _suspicions(cylinder: CylinderPressure, name: str, referenced: bool) -> Iterator[str]:
