@@ -1,10 +1,12 @@
 """What is found in measured pressures is what was put into them: an oracle that shares no code."""
 
+import re
+
 import numpy as np
 import pytest
 from exports import FIRED, HEADER, MOTORED, columns_of_cycles, cycles, text
 
-from crankmbs import CylinderTable, Gas, InputError, load_scene, read_pressure
+from crankmbs import CylinderTable, Gas, InputError, UndecidedError, load_scene, read_pressure
 from validation.oracles.measured import (
     Engine,
     loss_angle,
@@ -139,15 +141,27 @@ def test_the_name_tells_gauge_from_absolute(tmp_path, word, offset):
 @pytest.mark.parametrize(
     ("offset", "reference", "against"),
     [
-        (0.0, "gauge", "asks for -0.12 to 0.25 bar more: they look absolute)"),
-        (-1.0, "absolute", "asks for 0.88 to 1.25 bar more: they look gauge)"),
+        (
+            0.0,
+            "gauge",
+            "asks for -0.12 to 0.25 bar more: the dead centre is off, or they are absolute)",
+        ),
+        (
+            -1.0,
+            "absolute",
+            "asks for 0.88 to 1.25 bar more: the dead centre is off, or they are gauge)",
+        ),
         (-1.0, "gauge 1 bar", ""),
-        (-1.0, "gauge 0.6 bar", "asks for 0.88 to 1.25 bar more)"),
+        (
+            -1.0,
+            "gauge 0.6 bar",
+            "asks for 0.88 to 1.25 bar more: the dead centre is off, or the reference is wrong)",
+        ),
         (
             -0.5,
             "absolute",
-            "asks for 0.38 to 0.75 bar more: they look neither absolute nor gauge, and "
-            'reference="polytrope 1.32" adds it)',
+            "asks for 0.38 to 0.75 bar more: the dead centre is off, or they are neither absolute "
+            "nor gauge)",
         ),
         (-0.5, "polytrope 1.32", ""),
     ],
@@ -160,6 +174,7 @@ def test_a_reference_is_held_against_the_compression(tmp_path, offset, reference
     if against and reference == "absolute":
         said = str(there)
         assert "the dead centre is not checked: its compression would show it -" in said
+        assert "if the reference is right; check the dead centre first" in said
         assert "firing_tdc" not in said
         assert "with the dead centre where it may lie" not in said
 
@@ -396,3 +411,33 @@ def test_a_level_by_polytrope_leaves_the_dead_centre_open(tmp_path, dead_centre)
     error = np.mean(cylinder.imep) / 1e5 - mean_effective_pressure(FIRED)
     assert -cylinder.imep_a_degree * dead_centre / 1e5 == pytest.approx(error, abs=0.15)
     assert f"; one degree later changes the imep by {cylinder.imep_a_degree / 1e5:+.2g}" in said
+
+
+@pytest.mark.parametrize("dead_centre", [-9.0, 9.0])
+def test_a_wrong_dead_centre_does_not_lead_to_a_polytrope(tmp_path, dead_centre):
+    values = cycles(FIRED, ANGLE, 5, noise=0.02, dead_centre=dead_centre)
+    there = found(tmp_path, columns_of_cycles(ANGLE, values), reference="absolute")
+    (against,) = (each for each in there.warnings if "though a polytrope" in each)
+    assert " bar more: the dead centre is off, or they are " in against
+    assert "polytrope 1.32" not in str(there)
+    centre = there.cylinders[0].dead_centre
+    assert centre.low <= dead_centre <= centre.high
+    assert f"would show it {centre.middle:+.2f} +- {centre.half:.2f} degrees" in str(there)
+
+
+@pytest.mark.parametrize("dead_centre", [-10.0, -8.5])
+def test_a_late_dead_centre_does_not_make_a_signal_gauge(tmp_path, dead_centre):
+    """What asks for one bar more may be gauge, or absolute and its dead centre off."""
+    content = columns_of_cycles(ANGLE, cycles(FIRED, ANGLE, 5, dead_centre=dead_centre))
+    with pytest.raises(UndecidedError) as caught:
+        found(tmp_path, content)
+    said = re.search(r"absolute with a dead centre (\S+) \+- (\S+) degrees", str(caught.value))
+    middle, half = float(said[1]), float(said[2])
+    assert middle - half <= dead_centre <= middle + half
+
+
+def test_a_dead_centre_by_compression_rests_on_the_ratio(tmp_path):
+    content = columns_of_cycles(ANGLE, cycles(FIRED, ANGLE, 5))
+    there = found(tmp_path, content, reference="absolute", compression_ratio=14.0)
+    (warned,) = there.warnings
+    assert warned.endswith(", if the compression ratio of 14 and the reference are right")

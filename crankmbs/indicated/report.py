@@ -100,12 +100,14 @@ def _dead_centre(
     if not _stands(centre, doubted):
         yield (
             f"{name}: the dead centre is not checked: its compression would show it "
-            f"{centre.middle:+.2f} +- {centre.half:.2f} degrees from the file's; check {doubted} "
-            "first"
+            f"{centre.middle:+.2f} +- {centre.half:.2f} degrees from the file's{_first(doubted)}"
         )
         return
     angle = cylinder.firing + centre.middle
     basis = f"{name}: fired, from its compression"
+    trusted = ""
+    if not centre.motored and shape is not None and shape.ratio is not None:
+        trusted = f", if the compression ratio of {shape.ratio:g} and the reference are right"
     place = (
         f"the true dead centre lies {centre.middle:+.2f} +- {centre.half:.2f} degrees from the "
         "file's"
@@ -125,7 +127,17 @@ def _dead_centre(
         return
     yield (
         f"warning: {basis}; {place}; the file's is kept, "
-        f'firing_tdc="{angle:.2f} deg" takes the one found'
+        f'firing_tdc="{angle:.2f} deg" takes the one found{trusted}'
+    )
+
+
+def _first(doubted: str) -> str:
+    """What to check where a compression speaks against a reference, or a stroke."""
+    if doubted != "the reference":
+        return f"; check {doubted} first"
+    return (
+        ", if the reference is right; check the dead centre first, by a motored record, and then "
+        "the reference"
     )
 
 
