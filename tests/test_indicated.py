@@ -1,12 +1,10 @@
 """What is found in measured pressures is what was put into them: an oracle that shares no code."""
 
-import re
-
 import numpy as np
 import pytest
 from exports import FIRED, HEADER, MOTORED, columns_of_cycles, cycles, text
 
-from crankmbs import CylinderTable, Gas, InputError, UndecidedError, load_scene, read_pressure
+from crankmbs import CylinderTable, Gas, InputError, load_scene, read_pressure
 from validation.oracles.measured import (
     Engine,
     loss_angle,
@@ -392,52 +390,3 @@ def test_an_inverted_signal_is_turned_over_on_request(tmp_path):
     assert there.cylinders[0].peaks[0] / 1e5 == pytest.approx(
         pressure_of(FIRED, ANGLE).max(), abs=1e-3
     )
-
-
-@pytest.mark.parametrize("dead_centre", [-6.0, 0.0, 6.0])
-def test_a_level_by_polytrope_leaves_the_dead_centre_open(tmp_path, dead_centre):
-    """The level takes up what a wrong dead centre does to the compression."""
-    values = cycles(FIRED, ANGLE, 5, noise=0.02, dead_centre=dead_centre)
-    there = found(tmp_path, columns_of_cycles(ANGLE, values), reference="polytrope 1.335")
-    cylinder = there.cylinders[0]
-    assert cylinder.dead_centre is None
-    assert cylinder.imep_within is None
-    said = str(there)
-    assert "may be right" not in said
-    assert (
-        "the dead centre is not checked: the polytrope that gives the pressures their level fits a "
-        "wrong dead centre as well"
-    ) in said
-    error = np.mean(cylinder.imep) / 1e5 - mean_effective_pressure(FIRED)
-    assert -cylinder.imep_a_degree * dead_centre / 1e5 == pytest.approx(error, abs=0.15)
-    assert f"; one degree later changes the imep by {cylinder.imep_a_degree / 1e5:+.2g}" in said
-
-
-@pytest.mark.parametrize("dead_centre", [-9.0, 9.0])
-def test_a_wrong_dead_centre_does_not_lead_to_a_polytrope(tmp_path, dead_centre):
-    values = cycles(FIRED, ANGLE, 5, noise=0.02, dead_centre=dead_centre)
-    there = found(tmp_path, columns_of_cycles(ANGLE, values), reference="absolute")
-    (against,) = (each for each in there.warnings if "though a polytrope" in each)
-    assert " bar more: the dead centre is off, or they are " in against
-    assert "polytrope 1.32" not in str(there)
-    centre = there.cylinders[0].dead_centre
-    assert centre.low <= dead_centre <= centre.high
-    assert f"would show it {centre.middle:+.2f} +- {centre.half:.2f} degrees" in str(there)
-
-
-@pytest.mark.parametrize("dead_centre", [-10.0, -8.5])
-def test_a_late_dead_centre_does_not_make_a_signal_gauge(tmp_path, dead_centre):
-    """What asks for one bar more may be gauge, or absolute and its dead centre off."""
-    content = columns_of_cycles(ANGLE, cycles(FIRED, ANGLE, 5, dead_centre=dead_centre))
-    with pytest.raises(UndecidedError) as caught:
-        found(tmp_path, content)
-    said = re.search(r"absolute with a dead centre (\S+) \+- (\S+) degrees", str(caught.value))
-    middle, half = float(said[1]), float(said[2])
-    assert middle - half <= dead_centre <= middle + half
-
-
-def test_a_dead_centre_by_compression_rests_on_the_ratio(tmp_path):
-    content = columns_of_cycles(ANGLE, cycles(FIRED, ANGLE, 5))
-    there = found(tmp_path, content, reference="absolute", compression_ratio=14.0)
-    (warned,) = there.warnings
-    assert warned.endswith(", if the compression ratio of 14 and the reference are right")

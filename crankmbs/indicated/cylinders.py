@@ -41,12 +41,16 @@ def cylinder_of(
         pressure = _smoothed(phi, before, math.degrees(options.smooth))
         moved = _moved(phi, mean, np.mean(pressure, axis=0), shape, period)
     fired = is_fired(phi, np.mean(pressure, axis=0))
+    if fired is None and options.loss_angle is not None:
+        fired = False  # a loss angle is of a motored cycle
     centre: DeadCentre | None
     if fired is False:
         loss = None if options.loss_angle is None else math.degrees(options.loss_angle)
         centre = motored_dead_centre(phi, mean, rough / math.sqrt(len(before)), loss)
     else:
         centre = fired_dead_centre(phi, mean, shape if level else None)
+        if fired is None and centre is not None and not centre.at_peak:
+            fired = True
     return CylinderPressure(
         number=cycles.channel.cylinder,
         name=cycles.channel.name,

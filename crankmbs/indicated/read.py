@@ -172,6 +172,11 @@ def _cylinders(
         look = "warning: " if against else ""
         remarks.append(f"{look}cylinder {cycles.channel.cylinder}: {words} ({why})")
         cylinders.append(cylinder_of(cycles, added, shape, options, level.shows_dead_centre))
+        if options.loss_angle is not None and cylinders[-1].fired:
+            remarks.append(
+                f"warning: cylinder {cycles.channel.cylinder}: loss_angle is not used: it is of a "
+                "motored cycle, which is nearly symmetric about its peak, and this one is not"
+            )
     doubted = "the stroke" if halves else "the reference" if against else ""
     return _Found(tuple(cylinders), cut, level, doubted, remarks)
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from crankmbs.indicated.dead_centre import DeadCentre
+from crankmbs.indicated.dead_centre import LATE_PEAK, DeadCentre
 from crankmbs.indicated.findings import CylinderPressure, Level
 from crankmbs.indicated.shape import Shape
 from crankmbs.scene.units import BAR
@@ -165,6 +165,12 @@ def _suspicions(cylinder: CylinderPressure, name: str, referenced: bool) -> Iter
         yield (
             f"warning: {name}: its peak lies {-at:.3g} degrees before the dead centre: "
             "check the dead centre, and the sign of the angle"
+        )
+    if cylinder.fired is None and at > LATE_PEAK:
+        yield (
+            f"warning: {name}: it peaks {at:.3g} degrees after the file's dead centre, as "
+            "symmetric as a motored cycle: it burns little, or it is motored and its dead centre "
+            "lies behind that peak; loss_angle takes it as motored"
         )
     if imep is not None and cylinder.fired is not None:
         work = float(np.mean(imep))
