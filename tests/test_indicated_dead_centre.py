@@ -7,7 +7,7 @@ import pytest
 from exports import FIRED, MOTORED, columns_of_cycles, cycles
 
 from crankmbs import UndecidedError, read_pressure
-from validation.oracles.measured import loss_angle, mean_effective_pressure
+from validation.oracles.measured import Engine, loss_angle, mean_effective_pressure
 
 ANGLE = np.arange(-360.0, 360.0, 0.5)
 LOSS = f"{loss_angle(MOTORED)} deg"
@@ -89,3 +89,21 @@ def test_a_loss_angle_of_a_fired_cycle_is_not_dropped_in_silence(tmp_path, dead_
     there = found(tmp_path, columns_of_cycles(ANGLE, values), reference="absolute", loss_angle=LOSS)
     assert there.cylinders[0].fired is True
     assert any("cylinder 1: loss_angle is not used" in each for each in there.warnings)
+
+
+@pytest.mark.parametrize("dead_centre", [-3.0, 3.0])
+def test_a_dead_centre_beside_the_true_one_is_no_other_reference(tmp_path, dead_centre):
+    """An error that is common moves what the compression asks for by a quarter of a bar."""
+    values = cycles(FIRED, ANGLE, 5, noise=0.02, dead_centre=dead_centre)
+    there = found(tmp_path, columns_of_cycles(ANGLE, values), reference="absolute")
+    assert not any("though" in each for each in there.warnings)
+
+
+@pytest.mark.parametrize("loss", [0.05, 0.1, 0.2])
+def test_without_its_loss_angle_a_motored_dead_centre_is_an_interval(tmp_path, loss):
+    engine = Engine(loss=loss)
+    values = cycles(engine, ANGLE, 1, dead_centre=0.5)
+    there = found(tmp_path, columns_of_cycles(ANGLE, values), reference="absolute")
+    centre = there.cylinders[0].dead_centre
+    assert centre.low <= 0.5 <= centre.high
+    assert centre.half < 0.6

@@ -23,7 +23,7 @@ __all__ = ["cylinder_of"]
 
 _GAS_EXCHANGE = 200.0  # degrees from the firing dead centre: nothing burns behind
 _NORMAL = 1.4826  # standard deviations of a normal law in a median of deviations
-_FOURTH = math.sqrt(70.0)  # standard deviations of a row in that of its fourth differences
+_FEW = 20  # differences whose median is no estimate
 
 
 def cylinder_of(
@@ -128,17 +128,22 @@ def _mean_effective_pressure(phi: Array, pressure: Array, shape: Shape, period: 
 
 def _noise(phi: Array, pressure: Array) -> float:
     """Standard deviation of a row's noise [Pa], from fourth differences of the gas exchange, or of
-    all rows in a two-stroke cycle: their median, which neither valves nor knocking move.
+    all rows in a two-stroke cycle and where that has few: their median, which neither valves nor
+    knocking move.
 
-    0 where the rows are too few, or their angles uneven throughout.
+    Divided differences, sum_k p_k / prod_{j != k} (phi_k - phi_j) over five rows: steps need not be
+    even. Each is divided by the standard deviation that noise of 1 gives it.
     """
-    steps = np.diff(phi)
-    even = np.isclose(steps, np.median(steps), rtol=1e-3)
-    inside = np.abs(phi) > _GAS_EXCHANGE if np.max(phi) > 300.0 else np.full(phi.shape, True)
-    differences = np.diff(pressure[:64], n=4, axis=1) / _FOURTH
-    whole = even[:-3] & even[1:-2] & even[2:-1] & even[3:] & inside[2:-2]
-    sizes = np.abs(differences[:, whole])
-    return float(_NORMAL * np.median(sizes)) if sizes.size > 20 else 0.0
+    five = np.lib.stride_tricks.sliding_window_view(phi, 5)
+    apart = five[:, :, None] - five[:, None, :]
+    weights = 1.0 / np.prod(apart, axis=2, where=~np.eye(5, dtype=bool))
+    weights /= np.linalg.norm(weights, axis=1, keepdims=True)
+    rows = np.lib.stride_tricks.sliding_window_view(pressure[:64], 5, axis=1)
+    sizes = np.abs(np.einsum("crk,rk->cr", rows, weights))
+    inside = np.abs(phi[2:-2]) > _GAS_EXCHANGE
+    if np.max(phi) < 300.0 or sizes[:, inside].size <= _FEW:
+        inside = np.full(inside.shape, True)
+    return float(_NORMAL * np.median(sizes[:, inside]))
 
 
 def _closure(pressure: Array) -> Array:
