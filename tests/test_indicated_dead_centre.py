@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from exports import FIRED, MOTORED, columns_of_cycles, cycles
 
-from crankmbs import UndecidedError, read_pressure
+from crankmbs import InputError, UndecidedError, read_pressure
 from validation.oracles.measured import Engine, loss_angle, mean_effective_pressure
 
 ANGLE = np.arange(-360.0, 360.0, 0.5)
@@ -107,3 +107,14 @@ def test_without_its_loss_angle_a_motored_dead_centre_is_an_interval(tmp_path, l
     centre = there.cylinders[0].dead_centre
     assert centre.low <= 0.5 <= centre.high
     assert centre.half < 0.6
+
+
+def test_a_spike_is_no_dead_centre(tmp_path):
+    values = cycles(FIRED, ANGLE, 5, noise=0.02)
+    values[3, 1000] = 3e5
+    with pytest.raises(InputError) as caught:
+        found(tmp_path, columns_of_cycles(ANGLE, values), reference="absolute")
+    assert (
+        "its highest pressure, 3e+05 bar at 140 degrees in cycle 4, is a spike: the rows beside it "
+    ) in str(caught.value)
+    assert "firing_tdc" not in str(caught.value)

@@ -22,7 +22,7 @@ from crankmbs.indicated.firing import (
     peak_or_given,
     places,
 )
-from crankmbs.indicated.gaps import bridged
+from crankmbs.indicated.gaps import bridged, check_spike
 from crankmbs.indicated.options import Options
 from crankmbs.indicated.over_time import record_over_time, time_column
 from crankmbs.indicated.record import Channel, Record, record_of
@@ -264,7 +264,8 @@ def _cut(
         filled.append(sign * values)
         remarks += words
     means = [np.nanmean(values, axis=0) for values in filled]
-    for channel, mean in zip(channels, means, strict=True):
+    for channel, values, mean in zip(channels, filled, means, strict=True):
+        check_spike(record, channel, values)
         _check_sign(channel, mean, inverted=options.invert)
     if first is None:
         first = (
