@@ -118,3 +118,13 @@ def test_a_spike_is_no_dead_centre(tmp_path):
         "its highest pressure, 3e+05 bar at 140 degrees in cycle 4, is a spike: the rows beside it "
     ) in str(caught.value)
     assert "firing_tdc" not in str(caught.value)
+
+
+@pytest.mark.parametrize(("offset", "absolute"), [(0.0, True), (-1.0, False)])
+@pytest.mark.parametrize("dead_centre", [-15.0, -8.0])
+def test_a_motored_compression_tells_its_level_by_its_own_peak(
+    tmp_path, dead_centre, offset, absolute
+):
+    values = cycles(MOTORED, ANGLE, 5, noise=0.02, dead_centre=dead_centre) + offset
+    there = found(tmp_path, columns_of_cycles(ANGLE, values))
+    assert there.absolute is absolute

@@ -17,7 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.errors import InputError, UndecidedError
-from crankmbs.indicated.dead_centre import EXPONENTS, fired_dead_centre
+from crankmbs.indicated.dead_centre import (
+    EXPONENTS,
+    fired_dead_centre,
+    is_fired,
+    motored_dead_centre,
+)
 from crankmbs.indicated.options import REFERENCES, Options, Reference
 from crankmbs.indicated.record import Channel
 from crankmbs.indicated.shape import Shape
@@ -124,7 +129,10 @@ def decide(
     compression = None
     if shape is not None and shape.ratio is not None:
         asked = (
-            sorted(float(by_polytrope(each.phi, mean[None], shape, n)[0]) for n in EXPONENTS)
+            sorted(
+                float(by_polytrope(each.phi - _motored(each.phi, mean), mean[None], shape, n)[0])
+                for n in EXPONENTS
+            )
             for mean, each in zip(means, cylinders, strict=True)
         )
         compression = _Compression([(low, high) for low, high in asked])
@@ -153,6 +161,13 @@ def decide(
     raise UndecidedError(
         f"the file does not say what its pressures are measured from; {levels}", REFERENCES
     )
+
+
+def _motored(phi: Array, mean: Array) -> float:
+    """The dead centre [deg] that a motored cycle has by its peak; 0 of others: the file's."""
+    if is_fired(phi, mean) is not False:
+        return 0.0
+    return motored_dead_centre(phi, mean, 0.0, None).middle
 
 
 def refer(cycles: Cycles, reference: Reference, shape: Shape | None) -> tuple[Array, bool, str]:
