@@ -104,7 +104,7 @@ def _dead_centre(
         )
         return
     angle = cylinder.firing + centre.middle
-    basis = f"{name}: fired, from its compression"
+    basis = f"{name}: {'fired, ' if cylinder.fired else ''}from its compression"
     trusted = ""
     if not centre.motored and shape is not None and shape.ratio is not None:
         trusted = f", if the compression ratio of {shape.ratio:g} and the reference are right"
