@@ -56,7 +56,7 @@ def test_the_path_is_from_where_the_scene_stands(export):
     scene = edited(FREE, 'pressure = "gas.csv"\nabsolute = false\n', INDICATOR)
     (export / "machines" / "mine.toml").write_text(scene)
     arguments = "export.csv", "--scene", "machines/mine.toml", "-o", "out/table.csv"
-    result = crankmbs_("pressure", *arguments, "--no-figures")
+    result = crankmbs_("pressure", *arguments, "--reference", "absolute", "--no-figures")
     assert result.exit_code == 0, result.output
     lines = result.stdout.split("as [gas] of a scene:\n")[1]
     assert lines.startswith('  pressure = "../out/table.csv"\n')

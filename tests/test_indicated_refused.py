@@ -258,6 +258,10 @@ def test_the_command_ends_with_2_and_writes_nothing(export, tmp_path, name):
     [
         ({"reference": "relative"}, 'reference: must be "absolute", "gauge" (with'),
         ({"reference": "polytrope 3"}, "reference: a polytrope's exponent lies between 1 and 2; "),
+        (
+            {"reference": "polytrope 1,32"},
+            "reference: a polytrope's exponent lies between 1 and 2, with a decimal point; ",
+        ),
         ({"reference": "absolute 1 bar"}, 'reference: "absolute" stands alone; '),
         ({"unit": "torr"}, "unit: must be one of bar, mbar, "),
         ({"stroke": 3}, "stroke: must be 2 or 4; 3 came"),

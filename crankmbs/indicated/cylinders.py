@@ -23,13 +23,16 @@ __all__ = ["cylinder_of"]
 
 _GAS_EXCHANGE = 200.0  # degrees from the firing dead centre: nothing burns behind
 _NORMAL = 1.4826  # standard deviations of a normal law in a median of deviations
-_FOURTH = math.sqrt(70.0)  # standard deviations of a row in that of its fourth differences
+_FEW = 20  # differences whose median is no estimate
 
 
 def cylinder_of(
-    cycles: Cycles, added: Array, shape: Shape | None, options: Options, absolute: bool
+    cycles: Cycles, added: Array, shape: Shape | None, options: Options, level: bool
 ) -> CylinderPressure:
-    """The cylinder from its cycles and what is added to each, shape (cycles,) [Pa]."""
+    """The cylinder from its cycles and what is added to each, shape (cycles,) [Pa].
+
+    level : whether the pressures are absolute, and not by their own compression
+    """
     phi, period = cycles.phi, cycles.period
     before = cycles.pressure + added[:, None]
     mean, rough = np.mean(before, axis=0), _noise(phi, before)
@@ -38,12 +41,16 @@ def cylinder_of(
         pressure = _smoothed(phi, before, math.degrees(options.smooth))
         moved = _moved(phi, mean, np.mean(pressure, axis=0), shape, period)
     fired = is_fired(phi, np.mean(pressure, axis=0))
+    if fired is None and options.loss_angle is not None:
+        fired = False  # a loss angle is of a motored cycle
     centre: DeadCentre | None
     if fired is False:
         loss = None if options.loss_angle is None else math.degrees(options.loss_angle)
         centre = motored_dead_centre(phi, mean, rough / math.sqrt(len(before)), loss)
     else:
-        centre = fired_dead_centre(phi, mean, shape if absolute else None)
+        centre = fired_dead_centre(phi, mean, shape if level else None)
+        if fired is None and centre is not None and not centre.at_peak:
+            fired = True
     return CylinderPressure(
         number=cycles.channel.cylinder,
         name=cycles.channel.name,
@@ -59,6 +66,7 @@ def cylinder_of(
         closure=float(np.median(_closure(pressure))),
         moved=moved,
         imep_within=_within(phi, pressure, shape, period, centre),
+        imep_a_degree=_a_degree(phi, pressure, shape, period),
     )
 
 
@@ -73,6 +81,17 @@ def _within(
         for at in (centre.low, centre.high)
     )
     return low, high
+
+
+def _a_degree(phi: Array, pressure: Array, shape: Shape | None, period: float) -> float | None:
+    """By how much the mean imep [Pa] changes with a dead centre one degree later."""
+    if shape is None:
+        return None
+    before, behind = (
+        float(np.mean(_mean_effective_pressure(phi - at, pressure, shape, period)))
+        for at in (-0.5, 0.5)
+    )
+    return behind - before
 
 
 def _moved(
@@ -109,17 +128,22 @@ def _mean_effective_pressure(phi: Array, pressure: Array, shape: Shape, period: 
 
 def _noise(phi: Array, pressure: Array) -> float:
     """Standard deviation of a row's noise [Pa], from fourth differences of the gas exchange, or of
-    all rows in a two-stroke cycle: their median, which neither valves nor knocking move.
+    all rows in a two-stroke cycle and where that has few: their median, which neither valves nor
+    knocking move.
 
-    0 where the rows are too few, or their angles uneven throughout.
+    Divided differences, sum_k p_k / prod_{j != k} (phi_k - phi_j) over five rows: steps need not be
+    even. Each is divided by the standard deviation that noise of 1 gives it.
     """
-    steps = np.diff(phi)
-    even = np.isclose(steps, np.median(steps), rtol=1e-3)
-    inside = np.abs(phi) > _GAS_EXCHANGE if np.max(phi) > 300.0 else np.full(phi.shape, True)
-    differences = np.diff(pressure[:64], n=4, axis=1) / _FOURTH
-    whole = even[:-3] & even[1:-2] & even[2:-1] & even[3:] & inside[2:-2]
-    sizes = np.abs(differences[:, whole])
-    return float(_NORMAL * np.median(sizes)) if sizes.size > 20 else 0.0
+    five = np.lib.stride_tricks.sliding_window_view(phi, 5)
+    apart = five[:, :, None] - five[:, None, :]
+    weights = 1.0 / np.prod(apart, axis=2, where=~np.eye(5, dtype=bool))
+    weights /= np.linalg.norm(weights, axis=1, keepdims=True)
+    rows = np.lib.stride_tricks.sliding_window_view(pressure[:64], 5, axis=1)
+    sizes = np.abs(np.einsum("crk,rk->cr", rows, weights))
+    inside = np.abs(phi[2:-2]) > _GAS_EXCHANGE
+    if np.max(phi) < 300.0 or sizes[:, inside].size <= _FEW:
+        inside = np.full(inside.shape, True)
+    return float(_NORMAL * np.median(sizes[:, inside]))
 
 
 def _closure(pressure: Array) -> Array:

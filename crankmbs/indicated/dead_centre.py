@@ -16,7 +16,14 @@ from scipy.optimize import least_squares
 from crankmbs.indicated.shape import Shape
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["EXPONENTS", "DeadCentre", "fired_dead_centre", "is_fired", "motored_dead_centre"]
+__all__ = [
+    "EXPONENTS",
+    "LATE_PEAK",
+    "DeadCentre",
+    "fired_dead_centre",
+    "is_fired",
+    "motored_dead_centre",
+]
 
 EXPONENTS = (1.28, 1.40)  # of the compression of air and mixture in engines
 _ABOUT = 8.0  # degrees about the peak: a quartic follows a motored one to 0.01 degrees
@@ -26,6 +33,10 @@ _SIGMAS = 2.0  # standard deviations of the cycles that the interval takes in
 _COMPRESSION = (-100.0, -30.0)  # degrees: before any ignition
 _OFFSETS = (-5e3, 5e3)  # Pa: how well a referenced pressure is known
 _ASIDE = 45.0  # degrees from the peak, where burnt gas shows
+_CHORDS = (0.85, 0.7, 0.5, 0.35, 0.25)  # of the range: levels of chords through the peak
+_LEAN = (-1.7, 0.6)  # degrees: the middles of a motored cycle's chords from that of the highest
+_LEANING = (-2.5, 1.2)  # degrees: beyond, it burns
+LATE_PEAK = 2.5  # degrees: a peak farther behind the dead centre is a fired one's, or this is off
 _MOTORED, _FIRED = 1.06, 1.25  # of the pressures behind and before the peak
 
 
@@ -50,22 +61,48 @@ class DeadCentre(NamedTuple):
         return 0.5 * (self.low + self.high)
 
     @property
+    def at_peak(self) -> bool:
+        """Whether it may lie where a motored cycle with this peak has it."""
+        return self.low <= self.peak + _LOSS[1] and self.peak + _LOSS[0] <= self.high
+
+    @property
     def half(self) -> float:
         """Half its width [deg]: the uncertainty."""
         return 0.5 * (self.high - self.low)
 
 
 def is_fired(phi: Array, mean: Array) -> bool | None:
-    """Whether a mean cycle burns, by the pressures 45 degrees before and behind its peak; None
-    where that does not tell."""
+    """Whether a mean cycle burns, by the pressures 45 degrees before and behind its peak and by how
+    far it leans; None where these do not tell.
+
+    A motored cycle is symmetric about its peak but for its losses, wherever the file's dead centre
+    lies. Some that burn little are, too, and peak late: a late symmetric peak tells nothing.
+    """
     peak = float(phi[np.argmax(mean)])
     before, behind = np.interp([peak - _ASIDE, peak + _ASIDE], phi, mean)
     low = float(np.min(mean))
     rise = 0.02 * (np.max(mean) - low)  # a signal without reference has no ratios
     ratio = (behind - low + rise) / (before - low + rise)
-    if peak > 2.5 or ratio > _FIRED or ratio < 1.0 / _FIRED:  # the last one backwards
+    if ratio > _FIRED or ratio < 1.0 / _FIRED:  # the last one backwards
         return True
-    return False if ratio < _MOTORED else None
+    middles = np.array([_chord(phi, mean, level) for level in _CHORDS])
+    least, most = np.min(middles - middles[0]), np.max(middles - middles[0])
+    symmetric = ratio < _MOTORED and _LEAN[0] <= least and most <= _LEAN[1]
+    if least < _LEANING[0] or most > _LEANING[1] or (peak > LATE_PEAK and not symmetric):
+        return True
+    return False if symmetric and peak <= LATE_PEAK else None
+
+
+def _chord(phi: Array, mean: Array, level: float) -> float:
+    """Middle [deg] of the chord about the highest row at a level over the lowest, of the range."""
+    above = mean - np.min(mean) - level * np.ptp(mean)
+    top = int(np.argmax(mean))
+    first = int(np.max(np.flatnonzero(above[:top] < 0.0), initial=0))
+    last = top + int(np.min(np.flatnonzero(above[top:] < 0.0), initial=len(phi) - 1 - top))
+    rising, falling = slice(first, first + 2), slice(last, last - 2, -1)
+    return 0.5 * float(
+        np.interp(0.0, above[rising], phi[rising]) + np.interp(0.0, above[falling], phi[falling])
+    )
 
 
 def peak_of(phi: Array, mean: Array, noise: float) -> tuple[float, float]:

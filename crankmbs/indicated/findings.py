@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,7 +15,21 @@ from crankmbs.indicated.write import write_table
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.tables import CylinderTable, Table
 
-__all__ = ["CylinderPressure", "Indicated"]
+__all__ = ["CylinderPressure", "Indicated", "Level"]
+
+
+class Level(NamedTuple):
+    """What pressures are measured from: whether they are absolute; pegged : whether that rests on
+    a polytrope through their compression."""
+
+    absolute: bool
+    pegged: bool
+
+    @property
+    def shows_dead_centre(self) -> bool:
+        """Whether a compression shows its dead centre: p + c = C V^-n fits one that is degrees off
+        as well as the true one, with another c."""
+        return self.absolute and not self.pegged
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,7 +41,8 @@ class CylinderPressure:
     firing : the file's angle [deg] of its firing dead centre; lag [deg]: behind the first cylinder,
         measured between the flanks of their compression
     imep : shape (cycles,) [Pa]; None without a geometry; imep_within [Pa] : least and largest of
-        its mean with the dead centre where it may lie, None where nothing tells that
+        its mean with the dead centre where it may lie, None where nothing tells that;
+        imep_a_degree [Pa] : what it changes by with a dead centre one degree later
     fired : whether it burns; None where that cannot be told
     dead_centre : where the true dead centre lies from that used; None where nothing tells
     noise [Pa] : standard deviation of a row; closure [Pa] : the median step from a cycle to the
@@ -47,6 +63,7 @@ class CylinderPressure:
     closure: float
     moved: tuple[float, float, float] | None = None
     imep_within: tuple[float, float] | None = None
+    imep_a_degree: float | None = None
 
     @property
     def mean(self) -> Array:

@@ -1,5 +1,5 @@
 """Missing cells: a short gap is bridged between its neighbours, a cycle with a long one, or without
-some of its rows, left out. What was done is said."""
+some of its rows, left out; a cell that is a spike refused. What was done is said."""
 
 from __future__ import annotations
 
@@ -9,9 +9,11 @@ from numpy.lib.stride_tricks import sliding_window_view
 from crankmbs.errors import InputError
 from crankmbs.indicated.record import Channel, Record
 from crankmbs.numerics.arrays import Array
+from crankmbs.scene.units import BAR
 
-__all__ = ["bridged"]
+__all__ = ["bridged", "check_spike"]
 
+_ALONE = 0.2  # of a peak over the lowest pressure: less beside it is no cylinder's pressure
 _LONGEST = 3  # rows that a straight line bridges
 
 
@@ -51,3 +53,21 @@ def bridged(record: Record, channel: Channel) -> tuple[Array, list[str]]:
             "the others are numbered without them"
         )
     return values, remarks
+
+
+def check_spike(record: Record, channel: Channel, values: Array) -> None:
+    """Refuse a mean cycle whose peak is a single row of a single cycle.
+
+    values : shape (cycles, n) [Pa]
+    """
+    mean = np.nanmean(values, axis=0)
+    row = int(np.argmax(mean))
+    cycle = int(np.nanargmax(values[:, row]))
+    low, high = float(np.min(mean)), float(values[cycle, row])
+    beside = float(max(values[cycle, row - 1], values[cycle, (row + 1) % len(mean)]))
+    if beside - low < _ALONE * (high - low):
+        raise InputError(
+            f"{channel.name}: its highest pressure, {high / BAR:.4g} bar at {record.angle[row]:g} "
+            f"degrees in cycle {cycle + 1}, is a spike: the rows beside it are at most "
+            f"{beside / BAR:.4g} bar; correct it, or leave that cycle out"
+        )

@@ -50,7 +50,8 @@ def _reference(value: Any) -> Reference:
             exponent = 0.0
         if 1.0 < exponent < 2.0:
             return Reference(kind, exponent)
-        raise InputError(f"a polytrope's exponent lies between 1 and 2; {shown(rest)} came")
+        point = ", with a decimal point" if "," in rest else ""
+        raise InputError(f"a polytrope's exponent lies between 1 and 2{point}; {shown(rest)} came")
     if kind in ("absolute", "gauge", "inlet"):
         if kind == "absolute" and rest:
             raise InputError(f'"absolute" stands alone; {shown(value)} came')

@@ -13,7 +13,7 @@ from crankmbs.delimited.dialect import named
 from crankmbs.errors import InputError, UndecidedError
 from crankmbs.indicated.cylinders import cylinder_of
 from crankmbs.indicated.dead_centre import DeadCentre, fired_dead_centre
-from crankmbs.indicated.findings import CylinderPressure, Indicated
+from crankmbs.indicated.findings import CylinderPressure, Indicated, Level
 from crankmbs.indicated.firing import (
     cut_cycles,
     firing_angle,
@@ -22,7 +22,7 @@ from crankmbs.indicated.firing import (
     peak_or_given,
     places,
 )
-from crankmbs.indicated.gaps import bridged
+from crankmbs.indicated.gaps import bridged, check_spike
 from crankmbs.indicated.options import Options
 from crankmbs.indicated.over_time import record_over_time, time_column
 from crankmbs.indicated.record import Channel, Record, record_of
@@ -108,7 +108,7 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
     speed = _speed(record, cylinders[0].firing, shape, sheet.name)
     remarks += found.remarks
     for cylinder in cylinders:
-        remarks += sentences_of(cylinder, shape, found.absolute, found.doubted)
+        remarks += sentences_of(cylinder, shape, found.level, found.doubted)
         remarks += levels(cylinder, record.stroke, found.absolute, found.doubted)
     if shape is None:
         remarks.append(
@@ -117,7 +117,7 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
     return Indicated(
         source=sheet.name,
         stroke=record.stroke,
-        absolute=found.absolute,
+        absolute=found.level.absolute,
         aligned=len(cylinders) > 1 and len({each.firing for each in cylinders}) == 1,
         cycles="sequence" if table.x[-1] - table.x[0] > np.radians(record.period) else "mean",
         cylinders=cylinders,
@@ -129,12 +129,12 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
 
 
 class _Found(NamedTuple):
-    """The cylinders, and their cycles before these were referenced; whether their pressures are
-    absolute; what their compression speaks against, else nothing; what was done."""
+    """The cylinders, and their cycles before these were referenced; what their pressures are
+    measured from; what their compression speaks against, else nothing; what was done."""
 
     cylinders: tuple[CylinderPressure, ...]
     cut: list[Cycles]
-    absolute: bool
+    level: Level
     doubted: str
     remarks: list[str]
 
@@ -167,14 +167,20 @@ def _cylinders(
         remarks.append(_half_words(cut[0].channel, *halves))
         against = ""  # the mean of compressions and gas exchanges is no compression
     why += f", though {against}" if against else ""
-    cylinders, absolute = [], True
+    cylinders, level = [], Level(absolute=True, pegged=reference.kind == "polytrope")
     for cycles in cut:
         added, absolute, words = refer(cycles, reference, shape)
+        level = level._replace(absolute=absolute)
         look = "warning: " if against else ""
         remarks.append(f"{look}cylinder {cycles.channel.cylinder}: {words} ({why})")
-        cylinders.append(cylinder_of(cycles, added, shape, options, absolute))
+        cylinders.append(cylinder_of(cycles, added, shape, options, level.shows_dead_centre))
+        if options.loss_angle is not None and cylinders[-1].fired:
+            remarks.append(
+                f"warning: cylinder {cycles.channel.cylinder}: loss_angle is not used: it is of a "
+                "motored cycle, which is nearly symmetric about its peak, and this one is not"
+            )
     doubted = "the stroke" if halves else "the reference" if against else ""
-    return _Found(tuple(cylinders), cut, absolute, doubted, remarks)
+    return _Found(tuple(cylinders), cut, level, doubted, remarks)
 
 
 def _by_pressure(
@@ -188,7 +194,7 @@ def _by_pressure(
     """
     for _ in range(_ROUNDS):
         found = _cylinders(record, options, scene, shape, first)
-        centre = _centre(found.cylinders[0], shape if found.absolute else None)
+        centre = _centre(found.cylinders[0], shape if found.level.shows_dead_centre else None)
         if centre is None or not _PEAKS[0] < centre.peak < _PEAKS[1]:
             break
         if abs(centre.middle) < _SETTLED:
@@ -261,7 +267,8 @@ def _cut(
         if record.rotation is None:
             remarks += cut_off_words(channel.name, sign * values[~np.isnan(values)])
     means = [np.nanmean(values, axis=0) for values in filled]
-    for channel, mean in zip(channels, means, strict=True):
+    for channel, values, mean in zip(channels, filled, means, strict=True):
+        check_spike(record, channel, values)
         _check_sign(channel, mean, inverted=options.invert)
     if first is None:
         first = (

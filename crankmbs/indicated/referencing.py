@@ -17,7 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.errors import InputError, UndecidedError
-from crankmbs.indicated.dead_centre import EXPONENTS
+from crankmbs.indicated.dead_centre import (
+    EXPONENTS,
+    fired_dead_centre,
+    is_fired,
+    motored_dead_centre,
+)
 from crankmbs.indicated.options import REFERENCES, Options, Reference
 from crankmbs.indicated.record import Channel
 from crankmbs.indicated.shape import Shape
@@ -28,6 +33,9 @@ __all__ = ["Cycles", "decide", "refer"]
 
 _NEAR = 0.15e5  # Pa: so near 0, or the ambient, an offset has to lie
 _AMBIENT = 1.0e5  # Pa, near enough at any site: `_NEAR` is wider than weather and height
+_INTAKE = (
+    0.3e5  # Pa: an intake's absolute pressure is seldom less, a gauge one without a charger is
+)
 _COMPRESSION = (-100.0, -40.0)  # degrees from the firing dead centre
 _INLET = 10.0  # degrees about the bottom dead centre
 _MEAN = "its mean within 10 degrees of the bottom dead centre"
@@ -101,10 +109,9 @@ class _Compression(NamedTuple):
         added = {"absolute": 0.0, "gauge": _AMBIENT if value is None else value}.get(kind)
         if added is None or not self.telling or self.asks_for(added):
             return ""
-        look = f": they look {self.kind}" if self.kind != kind else ""
-        if not self.kind:
-            look = ': they look neither absolute nor gauge, and reference="polytrope 1.32" adds it'
-        return f"{self.asked}{look}"
+        other = self.kind or "neither absolute nor gauge"
+        cause = "the reference is wrong" if other == kind else f"they are {other}"
+        return f"{self.asked}: the dead centre is off, or {cause}"
 
 
 def decide(
@@ -122,7 +129,10 @@ def decide(
     compression = None
     if shape is not None and shape.ratio is not None:
         asked = (
-            sorted(float(by_polytrope(each.phi, mean[None], shape, n)[0]) for n in EXPONENTS)
+            sorted(
+                float(by_polytrope(each.phi - _motored(each.phi, mean), mean[None], shape, n)[0])
+                for n in EXPONENTS
+            )
             for mean, each in zip(means, cylinders, strict=True)
         )
         compression = _Compression([(low, high) for low, high in asked])
@@ -137,13 +147,27 @@ def decide(
     lows = [np.mean(mean[each.at_inlet]) for mean, each in zip(means, cylinders, strict=True)]
     levels = f"the gas exchange lies at {', '.join(f'{low / BAR:.3g}' for low in lows)} bar"
     if compression is not None:
-        if compression.kind:
+        if compression.kind == "absolute" or (compression.kind and min(lows) < _INTAKE):
             why = f"as the compression shows: {compression.asked}"
             return Reference(compression.kind), why, ""
         levels += f", and {compression.asked}"
+        centre = fired_dead_centre(cylinders[0].phi, means[0], shape)
+        if centre is not None:
+            levels += (
+                f"; they may be absolute with a dead centre {centre.middle:+.1f} +- "
+                f"{centre.half:.1f} degrees from the file's, or another compression ratio: "
+                "check those first"
+            )
     raise UndecidedError(
         f"the file does not say what its pressures are measured from; {levels}", REFERENCES
     )
+
+
+def _motored(phi: Array, mean: Array) -> float:
+    """The dead centre [deg] that a motored cycle has by its peak; 0 of others: the file's."""
+    if is_fired(phi, mean) is not False:
+        return 0.0
+    return motored_dead_centre(phi, mean, 0.0, None).middle
 
 
 def refer(cycles: Cycles, reference: Reference, shape: Shape | None) -> tuple[Array, bool, str]:

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from crankmbs.indicated.dead_centre import DeadCentre
-from crankmbs.indicated.findings import CylinderPressure
+from crankmbs.indicated.dead_centre import LATE_PEAK, DeadCentre
+from crankmbs.indicated.findings import CylinderPressure, Level
 from crankmbs.indicated.shape import Shape
 from crankmbs.scene.units import BAR
 
@@ -21,7 +21,7 @@ _MOVED = 0.01  # of the range: how far a cycle may miss the next one's beginning
 
 
 def sentences_of(
-    cylinder: CylinderPressure, shape: Shape | None, referenced: bool, doubted: str
+    cylinder: CylinderPressure, shape: Shape | None, level: Level, doubted: str
 ) -> Iterator[str]:
     """The sentences of one cylinder.
 
@@ -32,8 +32,8 @@ def sentences_of(
     if len(cylinder.pressure) > 1:
         yield _scatter(cylinder, name)
     yield _noise(cylinder, name)
-    yield from _dead_centre(cylinder, name, shape, doubted)
-    yield from _suspicions(cylinder, name, referenced)
+    yield from _dead_centre(cylinder, name, shape, level, doubted)
+    yield from _suspicions(cylinder, name, level.absolute)
     if cylinder.moved is not None:
         peak, angle, imep = cylinder.moved
         work = "" if math.isnan(imep) else f" and the imep by {imep / BAR:+.2g} bar"
@@ -91,27 +91,23 @@ def _stands(centre: DeadCentre, doubted: str) -> bool:
 
 
 def _dead_centre(
-    cylinder: CylinderPressure, name: str, shape: Shape | None, doubted: str
+    cylinder: CylinderPressure, name: str, shape: Shape | None, level: Level, doubted: str
 ) -> Iterator[str]:
     centre = cylinder.dead_centre
     if centre is None:
-        needs = "a reference that makes its pressures absolute"
-        if shape is None or shape.ratio is None:
-            needs = "stroke, rod length and compression_ratio"
-        yield (
-            f"{name}: the dead centre is not checked: in a fired cycle the compression shows it, "
-            f"which takes {needs}"
-        )
+        yield f"{name}: the dead centre is not checked: {_unchecked(cylinder, shape, level)}"
         return
     if not _stands(centre, doubted):
         yield (
             f"{name}: the dead centre is not checked: its compression would show it "
-            f"{centre.middle:+.2f} +- {centre.half:.2f} degrees from the file's; check {doubted} "
-            "first"
+            f"{centre.middle:+.2f} +- {centre.half:.2f} degrees from the file's{_first(doubted)}"
         )
         return
     angle = cylinder.firing + centre.middle
-    basis = f"{name}: fired, from its compression"
+    basis = f"{name}: {'fired, ' if cylinder.fired else ''}from its compression"
+    trusted = ""
+    if not centre.motored and shape is not None and shape.ratio is not None:
+        trusted = f", if the compression ratio of {shape.ratio:g} and the reference are right"
     place = (
         f"the true dead centre lies {centre.middle:+.2f} +- {centre.half:.2f} degrees from the "
         "file's"
@@ -131,8 +127,35 @@ def _dead_centre(
         return
     yield (
         f"warning: {basis}; {place}; the file's is kept, "
-        f'firing_tdc="{angle:.2f} deg" takes the one found'
+        f'firing_tdc="{angle:.2f} deg" takes the one found{trusted}'
     )
+
+
+def _first(doubted: str) -> str:
+    """What to check where a compression speaks against a reference, or a stroke."""
+    if doubted != "the reference":
+        return f"; check {doubted} first"
+    return (
+        ", if the reference is right; check the dead centre first, by a motored record, and then "
+        "the reference"
+    )
+
+
+def _unchecked(cylinder: CylinderPressure, shape: Shape | None, level: Level) -> str:
+    """Why a dead centre is not checked, and what it is worth."""
+    costs = ""
+    if cylinder.imep_a_degree is not None:
+        costs = f"; one degree later changes the imep by {cylinder.imep_a_degree / BAR:+.2g} bar"
+    if level.pegged and level.absolute and shape is not None and shape.ratio is not None:
+        return (
+            "the polytrope that gives the pressures their level fits a wrong dead centre as well, "
+            "with another level; a motored record, or a reference that does not rest on the "
+            f"compression, shows it{costs}"
+        )
+    needs = "a reference that makes its pressures absolute"
+    if shape is None or shape.ratio is None:
+        needs = "stroke, rod length and compression_ratio"
+    return f"in a fired cycle the compression shows it, which takes {needs}{costs}"
 
 
 def _suspicions(cylinder: CylinderPressure, name: str, referenced: bool) -> Iterator[str]:
@@ -142,6 +165,12 @@ def _suspicions(cylinder: CylinderPressure, name: str, referenced: bool) -> Iter
         yield (
             f"warning: {name}: its peak lies {-at:.3g} degrees before the dead centre: "
             "check the dead centre, and the sign of the angle"
+        )
+    if cylinder.fired is None and at > LATE_PEAK:
+        yield (
+            f"warning: {name}: it peaks {at:.3g} degrees after the file's dead centre, as "
+            "symmetric as a motored cycle: it burns little, or it is motored and its dead centre "
+            "lies behind that peak; loss_angle takes it as motored"
         )
     if imep is not None and cylinder.fired is not None:
         work = float(np.mean(imep))
