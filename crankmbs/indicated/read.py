@@ -109,7 +109,7 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
     remarks += found.remarks
     for cylinder in cylinders:
         remarks += sentences_of(cylinder, shape, found.level, found.doubted)
-        remarks += levels(cylinder, record.stroke, found.absolute, found.doubted)
+        remarks += levels(cylinder, record.stroke, found.level.absolute, found.doubted)
     if shape is None:
         remarks.append(
             "no stroke and rod length are known: without a scene no imep and no volumes are found"
