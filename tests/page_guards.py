@@ -279,7 +279,9 @@ def tasks(angles):
     for name in names:
         asked = {"scene": longer(GUARDS[name]), "angles": angles[name][::3]}
         found[f"dragged {name}"] = "dragged", asked
-    around = np.linspace(0.2, 12.0, 24)
+    around, steps = np.linspace(0.2, 12.0, 24), jumping()
+    steps = replace(steps, gas=replace(steps.gas, interpolation="step"))
+    found["dragged steps"] = "dragged", {"scene": longer(steps), "angles": around}
     for name, scene in FREED.items():
         found[f"freeing {name}"] = "freeing", {"scene": exported(scene), "angles": around}
     still = balanced()

@@ -141,7 +141,7 @@ def test_played_slower_the_plot_shows_a_part_of_the_run(page):
     assert page.text("#now-speed") == speed
     drag(page, centre_of(page, "#upper svg"), (1e4, 300.0))
     at = time(page)
-    assert 0.45 * whole <= at <= 0.46 * whole
+    assert 0.45 * whole * (1.0 - 1e-6) <= at <= 0.46 * whole  # the slider's place has its digits
     page.page.select_option("#slower", str(round(first)))
     assert ticks() == before
 

@@ -170,7 +170,7 @@ def test_a_run_that_turns_back_has_no_cycle():
     found = result.measures()
     assert found.imep is None
     run, cycles = tables(result, found)
-    assert run.headings[0] == "over the whole run, 0 to 1.48631 s"
+    assert run.headings[0] == "over the whole run, 0 to 1.48434 s"
     assert cycles.headings[0] == "over cycles 1 to 6"
     assert "turns back" in unsteady(result, found)
 

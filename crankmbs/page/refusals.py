@@ -33,7 +33,7 @@ def early_end(scene: Scene) -> tuple[str, ...]:
     """Why a run that does not settle ends before its last cycle, which the page shows of it.
 
     >>> early_end(load_scene("run_down"))[0].partition(": friction")[0]
-    'end: the run ends before its time, at rest at 4406.69 degrees'
+    'end: the run ends before its time, at rest at 4407.1 degrees'
     """
     if scene.start is None or settling(scene) is not None:
         return ()

@@ -45,7 +45,7 @@ def result_html(result: Result) -> str:
     """How a run ended, its measures and joint forces with their errors, and its speed drawn.
 
     >>> result_html(simulate(load_scene("propeller"))).count("<table>")
-    3
+    4
     """
     measures = measure(result)
     error = result.error
