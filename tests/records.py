@@ -1,8 +1,10 @@
 """Records over time as a data logger writes them, of a motion and a pressure that are known."""
 
 from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
+from exports import FIRED
 
 from validation.oracles.measured import pressure_of
 
@@ -84,3 +86,16 @@ class Record:
         lines = [] if names is None else [";".join(names)]
         lines += [f"{t:.6e};{p:.6e};{w:.6e}" for t, p, w in zip(*self.columns, strict=True)]
         return "\n".join(lines) + "\n"
+
+
+@cache
+def text_of(**options):
+    """The text of a record of the fired engine."""
+    return Record(**{"engine": FIRED, **options}).text()
+
+
+def written(folder, text):
+    """A file with this text."""
+    path = folder / "record.txt"
+    path.write_text(text)
+    return path

@@ -1,26 +1,13 @@
 """The speed that a wheel shows: where its crank angle begins, and what its stated error covers."""
 
-from functools import cache
-
 import numpy as np
 import pytest
 from exports import FIRED
-from records import SENSOR, Record
+from records import SENSOR, Record, text_of, written
 
 from crankmbs import read_pressure, read_speed
 
 RPM = np.pi / 30.0
-
-
-@cache
-def text_of(**options):
-    return Record(**{"engine": FIRED, **options}).text()
-
-
-def written(tmp_path, text):
-    path = tmp_path / "record.txt"
-    path.write_text(text)
-    return path
 
 
 def of_teeth(tmp_path, record, digits=9):

@@ -1,29 +1,16 @@
 """Records over time: what is read from teeth and volts is the motion and the pressure put in."""
 
-from functools import cache
-
 import numpy as np
 import pytest
 from command_line import crankmbs_, names, refused
 from exports import FIRED, MOTORED
-from records import SENSOR, Record
+from records import SENSOR, Record, text_of, written
 
 from crankmbs import InputError, UndecidedError, load_scene, read_pressure, read_speed
 from validation.oracles.measured import loss_angle, pressure_of
 
 GIVEN = {"wheel": "60-2", "sensor": SENSOR, "reference": "absolute"}
 BAR, RPM = 1e5, np.pi / 30.0
-
-
-@cache
-def text_of(**options):
-    return Record(**{"engine": FIRED, **options}).text()
-
-
-def written(tmp_path, text):
-    path = tmp_path / "record.txt"
-    path.write_text(text)
-    return path
 
 
 def tdc(record, less=0.0):
