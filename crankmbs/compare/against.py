@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +16,6 @@ from crankmbs.compare.quantities import QUANTITIES
 from crankmbs.compare.size import Size, percent
 from crankmbs.digits import digits
 from crankmbs.errors import InputError
-from crankmbs.mechanics.peaks import peak
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["Comparison", "Deviation", "compare"]
 
 _RUN = "run"  # among references, the run itself
+_Curve = tuple[str, str]  # reference and quantity
 
 
 @dataclass(frozen=True)
@@ -163,36 +163,63 @@ def compare(
     user_formulas = formulas_of(formulas)
     curves = [formula for formula in user_formulas if not formula.is_number]
     excerpt = excerpt_of(result, cylinder, variables_of(curves))
-    simulated = excerpt.simulated()
-    references = {CLOSED_FORM: excerpt.newton_euler(result.scene)}
+    answers, left_out = _answers(excerpt, curves)
+    zero = vanishing(answers.values())
+    left_out += [LeftOut(name, "", reason) for name, reason in zero.items()]
+    by_angle = [formula for formula in curves if formula.depends_on_angle_alone(excerpt)]
+
+    def between(points: Excerpt) -> dict[_Curve, Array]:
+        answers, _ = _answers(points, by_angle)
+        del answers[CLOSED_FORM]  # by which the run itself is read there
+        return _curves(answers, zero)
+
+    found = with_points_between(excerpt, _curves(answers, zero), between)
+    rows = tuple(
+        Deviation(
+            quantity=name,
+            reference=reference,
+            values=answers[reference][name],
+            error=error,
+            size=found.size((reference, name)),
+            peak=found.peak((_RUN, name)),
+        )
+        for (reference, name), error in found.sampled.items()
+        if reference != _RUN
+    )
+    numbers = _numbers([f for f in user_formulas if f.is_number], excerpt, left_out)
+    simulated = {name: curve for name, curve in answers[_RUN].items() if name not in zero}
+    return Comparison(excerpt, simulated, rows, numbers, tuple(left_out))
+
+
+def _answers(excerpt: Excerpt, formulas: list[Formula]) -> tuple[dict[str, Answer], list[LeftOut]]:
+    """What the run and every reference give, and what they lack."""
+    answers = {_RUN: excerpt.simulated(), CLOSED_FORM: excerpt.newton_euler(excerpt.result.scene)}
     left_out = [LeftOut(name, "", reason) for name, reason in excerpt.left_out().items()]
     for reference, truncation in LECTURES.items():
         try:
-            references[reference] = excerpt.lecture(truncation, constant_speed=True)
+            answers[reference] = excerpt.lecture(truncation, constant_speed=True)
         except InputError as error:
-            left_out += [LeftOut(q, reference, str(error)) for q in simulated if q in QUANTITIES]
-    for formula in curves:
-        if formula.quantity in simulated:
-            references[formula.label] = {formula.quantity: formula.curve(excerpt)}
+            names = [name for name in answers[_RUN] if name in QUANTITIES]
+            left_out += [LeftOut(name, reference, str(error)) for name in names]
+    for formula in formulas:
+        if formula.quantity in answers[_RUN]:
+            answers[formula.label] = {formula.quantity: formula.curve(excerpt)}
         else:
-            reason = excerpt.left_out().get(formula.quantity, "the run has none")
-            left_out.append(LeftOut(formula.quantity, formula.label, reason))
-    zero = vanishing([simulated, *references.values()])
-    left_out += [LeftOut(name, "", reason) for name, reason in zero.items()]
-    nonzero = {name: curve for name, curve in simulated.items() if name not in zero}
-    errors = {
-        (reference, name): answer[name] - curve
-        for reference, answer in references.items()
-        for name, curve in nonzero.items()
+            left_out.append(
+                LeftOut(formula.quantity, formula.label, excerpt.lacks(formula.quantity))
+            )
+    return answers, left_out
+
+
+def _curves(answers: dict[str, Answer], zero: Container[str]) -> dict[_Curve, Array]:
+    """The run, and how far every reference is off it, of quantities that are not zero."""
+    run = {name: curve for name, curve in answers[_RUN].items() if name not in zero}
+    return {
+        (reference, name): curve if reference == _RUN else answer[name] - curve
+        for reference, answer in answers.items()
+        for name, curve in run.items()
         if name in answer
     }
-    sizes, peaks = _sizes(excerpt, nonzero, errors, curves)
-    rows = tuple(
-        Deviation(name, reference, references[reference][name], error, size, peaks[name])
-        for ((reference, name), error), size in zip(errors.items(), sizes, strict=True)
-    )
-    numbers = _numbers([f for f in user_formulas if f.is_number], excerpt, left_out)
-    return Comparison(excerpt, nonzero, rows, numbers, tuple(left_out))
 
 
 def _numbers(
@@ -211,38 +238,3 @@ def _numbers(
             value = formula.number(excerpt)
             numbers.append(Number(formula.quantity, formula.label, value, simulated))
     return tuple(numbers)
-
-
-def _sizes(
-    excerpt: Excerpt,
-    simulated: Answer,
-    errors: dict[tuple[str, str], Array],
-    formulas: list[Formula],
-) -> tuple[list[Size], dict[str, float]]:
-    """Sizes of errors, reference by reference, and largest magnitudes of the run, both between the
-    samples as far as their curves are known there."""
-    by_angle = {
-        formula.label: formula
-        for formula in formulas
-        if (formula.label, formula.quantity) in errors and formula.depends_on_angle_alone(excerpt)
-    }
-    known = {pair: error for pair, error in errors.items() if pair[0] in {*LECTURES, *by_angle}}
-
-    def evaluate(points: Excerpt) -> dict[tuple[str, str], Array]:
-        run = points.simulated()
-        answers = {name: {one.quantity: one.curve(points)} for name, one in by_angle.items()}
-        for name in dict.fromkeys(reference for reference, _ in known):
-            if name in LECTURES:
-                answers[name] = points.lecture(LECTURES[name], constant_speed=True)
-        between = {(_RUN, name): run[name] for name in simulated}
-        return between | {(name, of): answers[name][of] - run[of] for name, of in known}
-
-    runs = {(_RUN, name): curve for name, curve in simulated.items()}
-    points, curves = with_points_between(excerpt, runs | known, evaluate)
-    sizes = [
-        excerpt.size_with(points, pair[1], error, curves[pair])
-        if pair in curves
-        else excerpt.size(pair[1], error)
-        for pair, error in errors.items()
-    ]
-    return sizes, {name: peak(curves[_RUN, name]) for name in simulated}

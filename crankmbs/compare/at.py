@@ -11,24 +11,23 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from crankmbs.compare.bodies import bodies_of
-from crankmbs.compare.quantities import QUANTITIES, cycle_angles, observed
+from crankmbs.compare.quantities import QUANTITIES, cycle_angles, observed, variable_of
 from crankmbs.errors import InputError, shown
-from crankmbs.measures.interpolate import read_at
+from crankmbs.measures.interpolate import read_with_errors
 from crankmbs.measures.span import last_span, passes_over
+from crankmbs.mechanics.variables import COORDINATES, EVERY
+from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import quantity
 
 if TYPE_CHECKING:
     import pandas as pd
-    import xarray as xr
 
 __all__ = ["AtAngle", "Reading", "angle_of", "at_angle"]
 
 _ROUNDING = 1e-9  # rad
 _FARTHEST = 1e6  # rad: the next number after it is 1e-10 rad away
-_FORCES = ("net force", "side thrust", "rod force", "tangential force", "radial force", "torque")
-_MOTION_SYMBOLS = {"piston displacement": "s", "piston velocity": "v", "piston acceleration": "a"}
 
 
 @dataclass(frozen=True)
@@ -106,10 +105,9 @@ def at_angle(result: Result, angle: float | str) -> AtAngle:
         )
     crank_angle = _in_last_cycle(result, modulo_period)
     passes = passes_over(result, window)
-    data = read_at(result, passes, np.array([crank_angle]), in_time=False)
-    time = float(data["time"].values[0])
-    readings = *_variables(data), *_lecture_forces(result.scene, data)
-    return AtAngle(result.scene, crank_angle, time, readings)
+    values, errors = read_with_errors(result, passes, np.array([crank_angle]), in_time=False)
+    readings = *_variables(values, errors), *_lecture_forces(result.scene, values, errors)
+    return AtAngle(result.scene, crank_angle, float(values["time"][0]), readings)
 
 
 def angle_of(text: float | str) -> float:
@@ -148,45 +146,36 @@ def _in_last_cycle(result: Result, angle: float) -> float:
     return end - sense * until_end
 
 
-def _variables(data: xr.Dataset) -> Iterator[Reading]:
+def _variables(values: dict[str, Array], errors: dict[str, float]) -> Iterator[Reading]:
     """Every variable at the one point."""
-    symbols = {name.replace(" ", "_"): symbol for name, symbol in _MOTION_SYMBOLS.items()}
-    for name, variable in data.data_vars.items():
-        units, error = variable.attrs["units"], variable.attrs["error_estimate"]
-        for k, value in enumerate(np.atleast_1d(variable.values[0]), start=1):
-            cylinder = k if "cylinder" in variable.dims else None
-            numbered = variable.ndim > 1 and cylinder is None  # journals, pins
-            label, symbol = f"{name} {k}" if numbered else str(name), symbols.get(str(name), "")
-            yield Reading(label, symbol, units, cylinder, float(value), error)
+    for name, at_point in values.items():
+        if name in COORDINATES:
+            continue
+        units, _, of = EVERY[name]
+        words = name.replace("_", " ")
+        symbol = QUANTITIES[words].symbol if words in QUANTITIES else ""
+        for k, value in enumerate(np.atleast_1d(at_point[0]), start=1):
+            label = f"{name} {k}" if of in ("journal", "pin") else name
+            cylinder = k if of == "cylinder" else None
+            yield Reading(label, symbol, units, cylinder, float(value), errors[name])
 
 
-def _lecture_forces(scene: Scene, data: xr.Dataset) -> Iterator[Reading]:
+def _lecture_forces(
+    scene: Scene, values: dict[str, Array], errors: dict[str, float]
+) -> Iterator[Reading]:
     """The lectures' forces and torque at the one point."""
-    variables = {str(name): variable.values for name, variable in data.variables.items()}
-    phi = cycle_angles(scene, variables["crank_angle"])
-    motion = variables["crank_speed"], variables["crank_acceleration"]
-    lecture_values = observed(bodies_of(scene), variables, phi, *motion)
-    for name in _FORCES:
-        units, symbol, _ = QUANTITIES[name]
-        error, plain = _error(scene, data, name), symbol.replace("{", "").replace("}", "")
-        for k, value in enumerate(lecture_values[name][0], start=1):
-            yield Reading(name, plain, units, k, float(value), error)
-
-
-def _error(scene: Scene, data: xr.Dataset, name: str) -> float:
-    """Of a lecture's quantity: the errors of the crank pin force and of its inertia part."""
-
-    def error_of(variable: str) -> float:
-        return float(data[variable].attrs["error_estimate"])
-
-    if name == "side thrust":
-        return error_of("side_force")
-    if name == "torque":
-        return error_of("crank_torque")
-    bodies = bodies_of(scene)
+    motion = values["crank_speed"], values["crank_acceleration"]
+    bodies, phi = bodies_of(scene), cycle_angles(scene, values["crank_angle"])
+    lectured = observed(bodies, values, phi, *motion)
+    # a force through the rod is the crank pin's less that of a mass which turns with it
     mass_radius = float(np.max(np.abs(bodies.masses.crank_pin * bodies.crank_radius)))
-    speed = abs(float(data["crank_speed"].values[0]))
-    motion_error = 2.0 * speed * error_of("crank_speed") + error_of("crank_acceleration")
-    return (
-        error_of("crank_pin_force_x") + error_of("crank_pin_force_y") + mass_radius * motion_error
-    )
+    speed_error = 2.0 * abs(float(motion[0][0])) * errors["crank_speed"]
+    inertia_error = mass_radius * (speed_error + errors["crank_acceleration"])
+    through_rod = errors["crank_pin_force_x"] + errors["crank_pin_force_y"] + inertia_error
+    for name, (units, symbol, _) in QUANTITIES.items():
+        if not symbol or name.replace(" ", "_") in values:
+            continue
+        plain = symbol.replace("{", "").replace("}", "")
+        error = errors.get(variable_of(name), through_rod)
+        for k, value in enumerate(lectured[name][0], start=1):
+            yield Reading(name, plain, units, k, float(value), error)

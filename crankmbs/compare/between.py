@@ -1,21 +1,23 @@
-"""Curves of a comparison between its samples: at bends and jumps, and where they are largest."""
+"""Curves of a comparison at its samples, and between them, where they are largest."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from dataclasses import replace
-from typing import TypeVar
+from dataclasses import dataclass, replace
+from typing import Generic, TypeVar
 
 import numpy as np
 
 from crankmbs.compare.excerpt import Excerpt, at_fold
+from crankmbs.compare.size import TIE, Size, top_of
 from crankmbs.measures.span import passes_over
+from crankmbs.mechanics.peaks import peak
 from crankmbs.mechanics.train import crank_angle_knots, friction_knots, knots_over_angle
 from crankmbs.motion.motion import Motion
 from crankmbs.motion.states import variables_at
 from crankmbs.numerics.arrays import Array, Index
 
-__all__ = ["with_points_between"]
+__all__ = ["Curves", "with_points_between"]
 
 Key = TypeVar("Key", bound=tuple[str, ...])
 Name = TypeVar("Name", bound=Hashable)
@@ -25,33 +27,69 @@ _NOTHING = 1e-9  # of the largest value of a quantity: rounding, or no more to b
 _HAIR = 1e-9  # rad, to either side of an angle at which curves bend or jump
 
 
+@dataclass(frozen=True)
+class Curves(Generic[Key]):
+    """Curves by reference, quantity and what else.
+
+    sampled : at the samples of an excerpt, shape (n,) each; between : those that are known
+        elsewhere, too, at points that are the samples and others
+    """
+
+    excerpt: Excerpt
+    sampled: dict[Key, Array]
+    points: Excerpt
+    between: dict[Key, Array]
+
+    def size(self, key: Key) -> Size:
+        """RMS of a curve over the samples; its maximum over all points, where that is more than
+        rounding above the samples'."""
+        quantity, sampled = key[1], self.excerpt.size(key[1], self.sampled[key])
+        if key not in self.between:
+            return sampled
+        more = self.points.size(quantity, self.between[key])
+        above = more.largest > sampled.largest * (1.0 + TIE)
+        return more._replace(rms=sampled.rms) if above else sampled
+
+    def peak(self, key: Key) -> float:
+        """The largest magnitude of a curve."""
+        return peak(self.between.get(key, self.sampled[key]))
+
+    def at_largest(self, key: Key, other: Key) -> float:
+        """A curve where another, known at as many points, is largest."""
+        known = key in self.between
+        points, curves = (self.points, self.between) if known else (self.excerpt, self.sampled)
+        top = top_of(curves[other], points.angles(key[1]), points.result.scene.period)
+        return float(curves[key][top])
+
+
 def with_points_between(
-    excerpt: Excerpt, curves: dict[Key, Array], evaluate: Callable[[Excerpt], dict[Key, Array]]
-) -> tuple[Excerpt, dict[Key, Array]]:
-    """An excerpt with points between its samples, and the curves at all of them.
+    excerpt: Excerpt,
+    sampled: dict[Key, Array],
+    evaluate: Callable[[Excerpt], dict[Key, Array]],
+) -> Curves[Key]:
+    """Curves at the samples of an excerpt and between them.
 
     Beside every sample at which a curve may be largest, points are put to either side of the angles
     at which pressures and loads bend or jump, and at the vertex of the parabola through the sample
     and its neighbours. There the motion is read as it was solved; without one the samples are all
     there is.
 
-    curves : by reference, quantity and what else, at the samples, shape (n,) each; evaluate : the
-        same at other points
+    evaluate : those of the curves that are known at any points
     """
     if excerpt.result.motion is None or len(excerpt.theta) < 3:
-        return excerpt, curves
+        return Curves(excerpt, sampled, excerpt, {})
     motion = passes_over(excerpt.result, excerpt.window).answer
     bends = _bends(excerpt, motion)
+    points, curves = excerpt, evaluate(excerpt)
     for _ in range(_ROUNDS):
-        time = excerpt.variables["time"]
-        more = _at(excerpt, motion, _near_tops(time, _sizes(curves), bends))
+        time = points.variables["time"]
+        more = _at(points, motion, _near_tops(time, _sizes(curves), bends))
         if more is None:
             break
-        found = evaluate(more)
         order = np.argsort(np.concatenate([time, more.variables["time"]]), kind="stable")
-        excerpt = replace(excerpt, variables=_joined(excerpt.variables, more.variables, order))
-        curves = _joined(curves, found, order)
-    return excerpt, curves
+        points = replace(points, variables=_joined(points.variables, more.variables, order))
+        curves = _joined(curves, evaluate(more), order)
+    return Curves(excerpt, sampled, points, curves)
 
 
 def _joined(some: dict[Name, Array], more: dict[Name, Array], order: Index) -> dict[Name, Array]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from crankmbs.compare.between import with_points_between
+from crankmbs.compare.between import Curves, with_points_between
 from crankmbs.compare.chain import REST, Idealized, checked_chain
 from crankmbs.compare.excerpt import Answer, Excerpt, LeftOut, excerpt_of, vanishing
 from crankmbs.compare.formula import Formula, formulas_of, variables_of
@@ -13,7 +13,6 @@ from crankmbs.compare.lectured import LECTURES, S1
 from crankmbs.compare.quantities import QUANTITIES
 from crankmbs.compare.split import Budget, Cause, Split
 from crankmbs.errors import InputError
-from crankmbs.mechanics.peaks import peak
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
@@ -92,137 +91,116 @@ def budget(
     curves = [formula for formula in formulas_of(formulas) if not formula.is_number]
     causes = checked_chain(chain, result.scene)
     excerpt = excerpt_of(result, cylinder, variables_of(curves))
-    ideal = Idealized(excerpt)
-    left_out = [LeftOut(name, "", reason) for name, reason in excerpt.left_out().items()]
     from_datum = "datum" in (chain or ())
-    evaluations = [_lecture(ideal, left_out), *_users(curves, ideal, from_datum, left_out)]
+    ideal = Idealized(excerpt)
+    evaluations, left_out = _evaluations(ideal, curves, from_datum)
     zero = vanishing([ideal.run, ideal.closed_form, *(e.values for e in evaluations)])
     left_out += [LeftOut(name, "", reason) for name, reason in zero.items()]
-    nonzero = [name for name in ideal.run if name not in zero]
     by_angle = [formula for formula in curves if formula.depends_on_angle_alone(excerpt)]
 
-    def evaluate(points: Excerpt) -> dict[_Curve, Array]:
+    def between(points: Excerpt) -> dict[_Curve, Array]:
         there = Idealized(points)
-        known = [_lecture(there, []), *_users(by_angle, there, from_datum, [])]
-        return _curves(there, causes, known, nonzero)
+        return _curves(there, causes, _evaluations(there, by_angle, from_datum)[0], zero)
 
-    at_samples = _curves(ideal, causes, evaluations, nonzero)
-    labels = {_RUN, *LECTURES, *(formula.label for formula in by_angle)}
-    known = {key: curve for key, curve in at_samples.items() if key[0] in labels}
-    points, between = with_points_between(excerpt, known, evaluate)
+    sampled = _curves(ideal, causes, evaluations, zero)
+    found = with_points_between(excerpt, sampled, between)
     splits = tuple(
-        _split(evaluation, name, (excerpt, at_samples), (points, between))
+        _split(evaluation, name, found)
         for evaluation in evaluations
         for name in evaluation.values
-        if name in nonzero
+        if name not in zero
     )
     return Budget(excerpt, causes, splits, tuple(dict.fromkeys(left_out)))
 
 
-def _lecture(ideal: Idealized, left_out: list[LeftOut]) -> _Evaluation:
-    """S1's formulas; where their series diverge, the lectures' closed form, noted in left_out."""
-    names = [name for name in ideal.run if name in QUANTITIES]
+def _evaluations(
+    ideal: Idealized, formulas: Sequence[Formula], from_datum: bool
+) -> tuple[list[_Evaluation], list[LeftOut]]:
+    """The lectures' formulas, then the user's for quantities that the closed form has too; and what
+    has no budget."""
+    excerpt = ideal.excerpt
+    left_out = [LeftOut(name, "", reason) for name, reason in excerpt.left_out().items()]
     try:
         values = ideal.excerpt.lecture(S1, constant_speed=True)
-        return _Evaluation(_TRUNCATED, values, ideal.all, ideal.truncated)
-    except InputError as error:
+        errors = {constant: ideal.series(constant_speed=constant) for constant in (True, False)}
+        evaluations = [_Evaluation(_TRUNCATED, values, ideal.all, errors)]
+    except InputError as error:  # the series diverge: the lectures' closed form
+        exact, names = ideal.exact(ideal.all), [name for name in ideal.run if name in QUANTITIES]
         left_out += [LeftOut(name, "series", str(error)) for name in names]
-    idealized = ideal.all - {"series"}
-    exact = ideal.exact(idealized)
-    return _Evaluation(_UNTRUNCATED, {name: exact[name] for name in names}, idealized, {})
-
-
-def _users(
-    formulas: Sequence[Formula], ideal: Idealized, from_datum: bool, left_out: list[LeftOut]
-) -> list[_Evaluation]:
-    """A user's formulas, those for quantities that the closed form has too."""
-    evaluations = []
+        values = {name: exact[name] for name in names}
+        evaluations = [_Evaluation(_UNTRUNCATED, values, ideal.all - {"series"}, {})]
     for formula in formulas:
         name = formula.quantity
         if name not in ideal.run:
-            reason = ideal.excerpt.left_out().get(name, "the run has none")
-            left_out.append(LeftOut(name, formula.label, reason))
-            continue
-        if name not in ideal.closed_form:
+            left_out.append(LeftOut(name, formula.label, excerpt.lacks(name)))
+        elif name not in ideal.closed_form:
             left_out.append(LeftOut(name, f"the budget of {formula.label}", _NO_BUDGET))
-            continue
-        idealized = formula.idealized | {"series", "solver"} | ({"datum"} if from_datum else set())
-        values = formula.curve(ideal.excerpt)
-        error = {name: values - ideal.exact(idealized)[name]}  # the same at either speed
-        errors = {True: error, False: error}
-        evaluations.append(
-            _Evaluation(formula.label, {name: values}, idealized & ideal.all, errors)
-        )
-    return evaluations
+        else:
+            idealized = formula.idealized | {"series", "solver"}
+            idealized = (idealized | {"datum"} if from_datum else idealized) & ideal.all
+            values = {name: formula.curve(excerpt)}
+            series = {name: values[name] - ideal.exact(idealized)[name]}  # the same at either speed
+            errors = {True: series, False: series}
+            evaluations.append(_Evaluation(formula.label, values, idealized, errors))
+    return evaluations, left_out
 
 
 def _curves(
     ideal: Idealized,
     chain: Sequence[str],
     evaluations: Sequence[_Evaluation],
-    quantities: Sequence[str],
+    zero: Container[str],
 ) -> dict[_Curve, Array]:
-    """The run, and the errors of formulas with their causes, of some quantities."""
-    curves: dict[_Curve, Array] = {(_RUN, name, _TOTAL): ideal.run[name] for name in quantities}
+    """The run, and the errors of formulas with their causes, of quantities that are not zero."""
+    curves = {(_RUN, name, _TOTAL): curve for name, curve in ideal.run.items() if name not in zero}
     for evaluation in evaluations:
-        for name in evaluation.values:
-            if name in quantities:
-                for cause, curve in _causes(ideal, chain, evaluation, name).items():
+        for name, values in evaluation.values.items():
+            if name not in zero:
+                for cause, curve in _causes(ideal, chain, evaluation, name):
                     curves[evaluation.reference, name, cause] = curve
+                curves[evaluation.reference, name, _TOTAL] = values - ideal.run[name]
     return curves
 
 
 def _causes(
     ideal: Idealized, chain: Sequence[str], evaluation: _Evaluation, name: str
-) -> dict[str, Array]:
+) -> Iterator[tuple[str, Array]]:
     """What each cause of a chain adds, from a formula's values to the run: they add up to formula
-    minus run, the last, to rounding, whatever their order."""
+    minus run, to rounding, whatever their order."""
     _, values, remaining, errors = evaluation
-    simulated, before, causes = ideal.run[name], values[name], {}
+    before = values[name]
     for cause in chain:
         if cause == "series" and not errors:
             continue
         lifted = frozenset[str]() if cause == REST else remaining - {cause}
         after = before
-        if not lifted:
-            after = simulated
-        elif lifted != remaining:
+        if lifted != remaining:
             after = ideal.exact(lifted)[name]
             if "series" in lifted:
                 after = after + errors["constant speed" in lifted][name]
-        causes[cause] = before - after
+        yield cause, before - after
         remaining, before = lifted, after
-    return {**causes, _TOTAL: values[name] - simulated}
 
 
-def _split(
-    evaluation: _Evaluation,
-    name: str,
-    sampled: tuple[Excerpt, dict[_Curve, Array]],
-    between: tuple[Excerpt, dict[_Curve, Array]],
-) -> Split:
-    """One quantity of a formula; the sizes of curves that are known between the samples are those
-    there, too."""
+def _split(evaluation: _Evaluation, name: str, found: Curves[_Curve]) -> Split:
+    """One quantity of a formula."""
     reference, run = evaluation.reference, (_RUN, name, _TOTAL)
-    (excerpt, at_samples), (_, everywhere) = sampled, between
-    points, curves = between if (reference, name, _TOTAL) in everywhere else sampled
-    top = points.top(name, curves[reference, name, _TOTAL])
     *causes, total = (
         Cause(
             name=key[2],
             curve=curve,
-            size=excerpt.size_with(points, name, curve, curves[key]),
-            at_largest=float(curves[key][top]),
+            size=found.size(key),
+            at_largest=found.at_largest(key, (reference, name, _TOTAL)),
         )
-        for key, curve in at_samples.items()
+        for key, curve in found.sampled.items()
         if key[:2] == (reference, name)
     )
     return Split(
         quantity=name,
         reference=reference,
         values=evaluation.values[name],
-        simulated=at_samples[run],
+        simulated=found.sampled[run],
         causes=tuple(causes),
         total=total,
-        peak=peak(everywhere[run]),
+        peak=found.peak(run),
     )

@@ -84,27 +84,24 @@ class Idealized:
         return self.excerpt.newton_euler(self.excerpt.result.scene)
 
     def exact(self, idealized: frozenset[str]) -> Answer:
-        """The closed form under these but "series", with the run's error unless "solver" is one."""
+        """The closed form under these but "series", with the run's error unless "solver" is one;
+        under none the run itself."""
         idealized = (idealized - {"series"}) & self.all
         if idealized not in self._exact:
-            self._exact[idealized] = self._evaluate(idealized)
+            self._exact[idealized] = self._evaluate(idealized) if idealized else self.run
         return self._exact[idealized]
 
-    @cached_property
-    def truncated(self) -> dict[bool, Answer]:
-        """S1's formulas minus the closed form under all its idealizations, at constant speed (True)
-        and at the run's.
+    def series(self, *, constant_speed: bool) -> Answer:
+        """S1's formulas minus the closed form under all its idealizations, at constant speed or at
+        the run's.
 
         Raises
         ------
         InputError : the series diverge
         """
-        errors = {}
-        for constant in (True, False):
-            formula = self.excerpt.lecture(S1, constant_speed=constant)
-            exact = self.exact(self.all if constant else self.all - {"constant speed"})
-            errors[constant] = {name: formula[name] - exact[name] for name in formula}
-        return errors
+        formula = self.excerpt.lecture(S1, constant_speed=constant_speed)
+        exact = self.exact(self.all - (set() if constant_speed else {"constant speed"}))
+        return {name: formula[name] - exact[name] for name in formula}
 
     def _evaluate(self, idealized: frozenset[str]) -> Answer:
         scene = self.excerpt.result.scene
@@ -123,10 +120,6 @@ class Idealized:
             shift = lecture.datum_shift(**bodies_of(scene, self.excerpt.cylinder).lengths)
             answer["piston displacement"] = answer["piston displacement"] + shift
         if "solver" not in idealized:
-            answer = {name: answer[name] + self._solver[name] for name in answer}
+            at_run = self.closed_form
+            answer = {name: answer[name] + (self.run[name] - at_run[name]) for name in answer}
         return answer
-
-    @cached_property
-    def _solver(self) -> Answer:
-        """Run minus closed form, at the motion of the run."""
-        return {name: self.run[name] - self.closed_form[name] for name in self.closed_form}

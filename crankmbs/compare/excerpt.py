@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from crankmbs.compare.bodies import bodies_of
 from crankmbs.compare.lectured import Formulas, lectured
-from crankmbs.compare.quantities import OBSERVABLES, cycle_angles, observed
-from crankmbs.compare.size import TIE, Size, size_of, top_of
+from crankmbs.compare.quantities import OBSERVABLES, cycle_angles, observed, variable_of
+from crankmbs.compare.size import Size, size_of
 from crankmbs.errors import InputError
 from crankmbs.measures import Span, last_span
 from crankmbs.mechanics.peaks import negligible
@@ -105,17 +105,6 @@ class Excerpt:
         """Maximum and RMS of a curve over these points."""
         return size_of(curve, self.angles(quantity), self.result.scene.period)
 
-    def size_with(self, points: Excerpt, quantity: str, curve: Array, there: Array) -> Size:
-        """RMS of a curve over the samples, maximum of the same curve over more points, where that
-        is more than rounding above the samples'."""
-        sampled, more = self.size(quantity, curve), points.size(quantity, there)
-        above = more.largest > sampled.largest * (1.0 + TIE)
-        return more._replace(rms=sampled.rms) if above else sampled
-
-    def top(self, quantity: str, curve: Array) -> int:
-        """The index of the point where a curve is largest."""
-        return top_of(curve, self.angles(quantity), self.result.scene.period)
-
     def _speeds(self, constant_speed: bool) -> tuple[Array, Array]:
         """omega and alpha: the run's, or its mean speed and 0."""
         if not constant_speed:
@@ -128,8 +117,8 @@ class Excerpt:
         scene = self.result.scene
         phi = cycle_angles(scene, self.theta)
         answer = observed(bodies_of(scene), variables, phi, omega, alpha)
-        further = {name: variables.get(name.replace(" ", "_")) for name in self.others}
-        answer |= {name: curve for name, curve in further.items() if curve is not None}
+        further = {name: variable_of(name) for name in self.others}
+        answer |= {name: variables[of] for name, of in further.items() if of in variables}
         return self._of_cylinder(answer)
 
     def _of_cylinder(self, answer: Answer) -> Answer:
@@ -148,6 +137,10 @@ class Excerpt:
         if np.any(self.omega == 0.0):
             return {"gas torque": "the crank stands still, and it is gas power over speed"}
         return {}
+
+    def lacks(self, quantity: str) -> str:
+        """Why the run has none of a quantity."""
+        return self.left_out().get(quantity, "the run has none")
 
 
 def at_fold(rod_angle: Array) -> NDArray[np.bool_]:

@@ -24,6 +24,7 @@ __all__ = [
     "Quantity",
     "cycle_angles",
     "observed",
+    "variable_of",
 ]
 
 
@@ -60,6 +61,14 @@ OBSERVABLES = {
     if name not in ("time", "crank_angle", "fuel") and variable.of in ("", "cylinder")
 } | QUANTITIES
 """What a formula may stand for: the lectures' quantities, and the variables of a result."""
+
+
+_CALLED = {"side thrust": "side_force", "torque": "crank_torque"}
+
+
+def variable_of(quantity: str) -> str:
+    """The variable of a result that a quantity is, if it is one."""
+    return _CALLED.get(quantity, quantity.replace(" ", "_"))
 
 
 def cycle_angles(scene: Scene, theta: Array) -> Array:
@@ -99,21 +108,14 @@ def observed(
     beta = variables["rod_angle"]
     with np.errstate(divide="ignore", invalid="ignore"):
         gas_torque = variables["gas_force"] * variables["piston_velocity"] / omega
-    return {
-        "piston displacement": variables["piston_displacement"],
-        "piston velocity": variables["piston_velocity"],
-        "piston acceleration": variables["piston_acceleration"],
+    through = {
         "net force": through_x,
-        "side thrust": variables["side_force"],
         "rod force": through_x * np.cos(beta) - through_y * np.sin(beta),
         "tangential force": through_x * sin_phi - through_y * cos_phi,
         "radial force": through_x * cos_phi + through_y * sin_phi,
-        "torque": variables["crank_torque"],
         "gas torque": gas_torque,
-        "piston pin force x": variables["piston_pin_force_x"],
-        "piston pin force y": variables["piston_pin_force_y"],
-        "crank pin force x": variables["crank_pin_force_x"],
-        "crank pin force y": variables["crank_pin_force_y"],
-        "main bearing force x": variables["main_bearing_force_x"],
-        "main bearing force y": variables["main_bearing_force_y"],
+    }
+    return {
+        name: through[name] if name in through else variables[variable_of(name)]
+        for name in QUANTITIES
     }
