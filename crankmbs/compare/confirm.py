@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from crankmbs.errors import FormulationError, InputError
 from crankmbs.measures.interpolate import read_with_errors
 from crankmbs.mechanics.knots import repeat
+from crankmbs.mechanics.peaks import peak
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.mechanics.variables import EVERY
 from crankmbs.motion.cells import Cells
@@ -32,20 +34,15 @@ _PLACES = 360  # at which it is compared: between samples, beside jumps at whole
 _STATES = 60  # of the whole run
 _LATE = 1e-3  # of a stretch that begins at rest: where friction lets go, rounding decides
 _NOTHING = 1e-9  # of the largest of the same unit: what is smaller is compared with that
-_MOTION = {
-    "crank speed": ("crank_speed",),
-    "crank acceleration": ("crank_acceleration",),
-    "piston displacement": ("piston_displacement",),
-    "piston velocity": ("piston_velocity",),
-    "piston acceleration": ("piston_acceleration",),
-}
-_FORCES = {
-    "main bearing": ("main_bearing_force_x", "main_bearing_force_y"),
-    "crank pin": ("crank_pin_force_x", "crank_pin_force_y"),
-    "piston pin": ("piston_pin_force_x", "piston_pin_force_y"),
-    "side force": ("side_force",),
-    "external torque": ("external_torque",),
-}
+_MOTION = (
+    "crank angle",
+    "crank speed",
+    "crank acceleration",
+    "piston displacement",
+    "piston velocity",
+    "piston acceleration",
+)
+_FORCES = ("main bearing", "crank pin", "piston pin", "side force", "external torque")
 
 
 @dataclass(frozen=True)
@@ -105,7 +102,7 @@ class Confirmation:
     @property
     def difference(self) -> float:
         """The largest difference over the last period, relative to the peak of its quantity."""
-        return max((row.largest[0] / row.peak for row in self.period), default=math.nan)
+        return _most(self.period)
 
     @property
     def error(self) -> float:
@@ -115,7 +112,7 @@ class Confirmation:
     @property
     def at_states(self) -> float:
         """The largest difference at the states, relative to the peak."""
-        return max((row.largest[0] / row.peak for row in self.states), default=math.nan)
+        return _most(self.states)
 
     @property
     def holds(self) -> bool:
@@ -137,6 +134,10 @@ class Confirmation:
             f"{'to' if self.holds else 'by'} {self.difference:.0e} of the peak in motion and every "
             f"joint force {part}, with a stated error of {self.error:.0e}"
         )
+
+
+def _most(rows: tuple[Difference, ...]) -> float:
+    return max((row.largest[0] / row.peak for row in rows), default=math.nan)
 
 
 def confirm(result: Result) -> Confirmation:
@@ -188,11 +189,8 @@ def _moving(result: Result) -> Motion | None:
     """The end of the motion, of a period at most, in which the crank neither rests nor is held."""
     motion = result.passes.answer
     part = motion.last(result.scene.period) or motion
-    pieces = list(part.cells)
-    while pieces and _rests(pieces[-1]):
-        pieces.pop()
-    first = next((k for k in reversed(range(len(pieces))) if _rests(pieces[k])), -1)
-    return Motion(part.train, pieces[first + 1 :]) if pieces else None
+    stretches = [list(cells) for rests, cells in groupby(part.cells, _rests) if not rests]
+    return Motion(part.train, stretches[-1]) if stretches else None
 
 
 def _rests(cells: Cells) -> bool:
@@ -216,13 +214,12 @@ def _last_period(
     else:
         start = part.at(np.array([begin]), in_time=True)
         state = begin, float(start.theta[0]), float(start.omega[0])
-        fuel = ours.get("fuel")
-        shares = None if fuel is None else _shares(train, ours["crank_angle"], fuel)
+        shares = _shares(train, ours["crank_angle"], ours["fuel"]) if "fuel" in ours else None
         phases, steps = part.cells[0].acting.phases, _STEPS // len(result.scene.cylinders)
         theirs, errors = beside.integrated(train, state, (phases, shares), times, _RTOL, steps)
-    turned = abs(part.turned)
-    rows = {"crank angle": ("crank_angle",), **_MOTION, **_forces(result.scene)}
-    return _rows(rows, ours, theirs, stated, errors, turned), (begin, end)
+    quantities = (*_MOTION, *_forces(result.scene))
+    rows = _differences(quantities, (ours, theirs), (stated, errors), abs(part.turned))
+    return rows, (begin, end)
 
 
 def _shares(train: CrankTrain, theta: Array, fuel: Array) -> Shares:
@@ -246,50 +243,51 @@ def _at_states(result: Result, train: CrankTrain) -> tuple[Difference, ...]:
     ours = {name: values[chosen] for name, (_, values, _) in of_time.items()}
     stated = {name: about.get("error_estimate", 0.0) for name, (_, _, about) in of_time.items()}
     theirs = beside.consistent(train, ours, driven=result.scene.motion is not None)
-    motion = {name: _MOTION[name] for name in ("crank acceleration", "piston acceleration")}
-    rows = {**motion, **_forces(result.scene)}
-    none = dict.fromkeys(theirs, 0.0)
-    return _rows(rows, ours, theirs, stated, none, math.inf)
+    quantities = ("crank acceleration", "piston acceleration", *_forces(result.scene))
+    return _differences(quantities, (ours, theirs), (stated, dict.fromkeys(theirs, 0.0)), math.inf)
 
 
-def _rows(
-    rows: Mapping[str, tuple[str, ...]],
-    ours: Mapping[str, Array],
-    theirs: Mapping[str, Array],
-    stated: Mapping[str, float],
-    errors: Mapping[str, float],
+def _differences(
+    quantities: tuple[str, ...],
+    runs: tuple[Mapping[str, Array], Mapping[str, Array]],
+    errors: tuple[Mapping[str, float], Mapping[str, float]],
     turned: float,
 ) -> tuple[Difference, ...]:
-    """Differences of quantities; of the crank angle relative to the angle turned through, of what
-    is nothing beside others of its unit relative to those."""
+    """Of two runs that state these errors; of the crank angle relative to the angle turned through,
+    of what is nothing beside others of its unit relative to those."""
+    ours, theirs = runs
+    parts = {quantity: _parts(quantity) for quantity in quantities}
+    units = {quantity: EVERY[names[0]].units for quantity, names in parts.items()}
     peaks = {
-        title: float(np.max(np.sqrt(sum(ours[name] ** 2 for name in names))))
-        for title, names in rows.items()
+        quantity: peak(np.linalg.norm([ours[name] for name in names], axis=0))
+        for quantity, names in parts.items()
     } | {"crank angle": turned}
-    units = {title: EVERY[names[0]].units for title, names in rows.items()}
-    compared = []
-    for title, names in rows.items():
-        most = max(size for other, size in peaks.items() if units.get(other) == units[title])
-        size = np.sqrt(sum((ours[name] - theirs[name]) ** 2 for name in names))
-        compared.append(
+    differences = []
+    for quantity, names in parts.items():
+        alike = [peaks[other] for other in quantities if units[other] == units[quantity]]
+        largest, most = peaks[quantity], max(alike)
+        size = np.linalg.norm([ours[name] - theirs[name] for name in names], axis=0)
+        first, second = (math.hypot(*(each[name] for name in names)) for each in errors)
+        differences.append(
             Difference(
-                quantity=title,
-                units=units[title],
+                quantity=quantity,
+                units=units[quantity],
                 crank_angle=ours["crank_angle"],
                 size=size.reshape(len(size), -1),
-                peak=peaks[title] if peaks[title] > _NOTHING * most else most or 1.0,
-                errors=(
-                    math.hypot(*(stated[name] for name in names)),
-                    math.hypot(*(errors[name] for name in names)),
-                ),
+                peak=largest if largest > _NOTHING * most else most or 1.0,
+                errors=(first, second),
                 formulations=("the run", "exudyn"),
             )
         )
-    return tuple(compared)
+    return tuple(differences)
 
 
-def _forces(scene: Scene) -> dict[str, tuple[str, ...]]:
-    """The forces and the torque that are compared, by their variables."""
-    if scene.throws is None:
-        return _FORCES
-    return _FORCES | {"main journal": ("main_journal_force_x", "main_journal_force_y")}
+def _parts(quantity: str) -> tuple[str, ...]:
+    """The variable that a quantity is, or the components of a joint's force."""
+    name = quantity.replace(" ", "_")
+    return (name,) if name in EVERY else (f"{name}_force_x", f"{name}_force_y")
+
+
+def _forces(scene: Scene) -> tuple[str, ...]:
+    """The forces and the torque that are compared."""
+    return _FORCES if scene.throws is None else (*_FORCES, "main journal")
