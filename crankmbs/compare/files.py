@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from crankmbs.compare.against import Comparison
+from crankmbs.compare.against import Comparison, Deviation
 from crankmbs.compare.excerpt import Excerpt
 from crankmbs.compare.quantities import OBSERVABLES
 from crankmbs.compare.size import Size, percent, within
@@ -18,6 +18,7 @@ from crankmbs.storage.files import write_in_one_move
 
 __all__ = ["save_budget", "save_budget_peaks", "save_comparison", "save_numbers"]
 
+_WHAT = ["reference", "quantity", "unit", "cylinder"]
 _SIZE = ["peak", "max", "rms", "max_percent", "rms_percent", "angle_deg"]
 
 
@@ -29,11 +30,9 @@ def save_comparison(comparison: Comparison, folder: Path) -> Path:
     OutputError : the folder cannot be made or written
     """
     lines = (
-        [row.reference, *_label(comparison.excerpt, row.quantity), *_values(row.size, row.peak)]
-        for row in comparison.rows
+        [*_what(comparison.excerpt, row), *_values(row.size, row.peak)] for row in comparison.rows
     )
-    heading = ["reference", "quantity", "unit", "cylinder", *_SIZE]
-    return _write(folder / "comparison.csv", heading, lines)
+    return _write(folder / "comparison.csv", [*_WHAT, *_SIZE], lines)
 
 
 def save_budget(budget: Budget, folder: Path) -> Path:
@@ -47,10 +46,9 @@ def save_budget(budget: Budget, folder: Path) -> Path:
     ------
     OutputError : the folder cannot be made or written
     """
-    heading = ["reference", "quantity", "unit", "cylinder", "crank_angle_deg", "angle_deg"]
+    curves = ["crank_angle_deg", "angle_deg", "run", "formula", "total", *budget.chain]
     lines = (line for split in budget.splits for line in _budget_lines(budget, split))
-    heading += ["run", "formula", "total", *budget.chain]
-    return _write(folder / "budget.csv", heading, lines)
+    return _write(folder / "budget.csv", [*_WHAT, *curves], lines)
 
 
 def save_budget_peaks(budget: Budget, folder: Path) -> Path:
@@ -61,17 +59,11 @@ def save_budget_peaks(budget: Budget, folder: Path) -> Path:
     OutputError : the folder cannot be made or written
     """
     lines = (
-        [
-            split.reference,
-            *_label(budget.excerpt, split.quantity),
-            cause.name,
-            *_values(cause.size, split.peak),
-        ]
+        [*_what(budget.excerpt, split), cause.name, *_values(cause.size, split.peak)]
         for split in budget.splits
         for cause in (*split.causes, split.total)
     )
-    heading = ["reference", "quantity", "unit", "cylinder", "cause", *_SIZE]
-    return _write(folder / "budget_peaks.csv", heading, lines)
+    return _write(folder / "budget_peaks.csv", [*_WHAT, "cause", *_SIZE], lines)
 
 
 def save_numbers(comparison: Comparison, folder: Path) -> Path:
@@ -97,19 +89,18 @@ def save_numbers(comparison: Comparison, folder: Path) -> Path:
 def _budget_lines(budget: Budget, split: Split) -> Iterator[list[str]]:
     """The lines of a quantity, sample by sample; causes that it lacks are 0."""
     excerpt = budget.excerpt
-    label = [split.reference, *_label(excerpt, split.quantity)]
     angle = within(excerpt.angles(split.quantity), excerpt.result.scene.period)
     causes = {cause.name: cause.curve for cause in split.causes}
     curves = [np.degrees(excerpt.theta), np.degrees(angle), split.simulated, split.values]
     curves += [split.total.curve, *(causes.get(name, 0.0 * angle) for name in budget.chain)]
     for sample in np.transpose(curves).tolist():
-        yield [*label, *(f"{value:.15g}" for value in sample)]
+        yield [*_what(excerpt, split), *(f"{value:.15g}" for value in sample)]
 
 
-def _label(excerpt: Excerpt, quantity: str) -> list[str]:
-    observable = OBSERVABLES[quantity]
-    cylinder = str(excerpt.cylinder) if observable.per_cylinder else "all"
-    return [quantity, observable.units, cylinder]
+def _what(excerpt: Excerpt, row: Deviation | Split) -> list[str]:
+    about = OBSERVABLES[row.quantity]
+    cylinder = str(excerpt.cylinder) if about.per_cylinder else "all"
+    return [row.reference, row.quantity, about.units, cylinder]
 
 
 def _values(size: Size, peak: float) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -71,8 +72,7 @@ class Formula:
         ------
         InputError : it raises, or gives other than n finite numbers
         """
-        per_cylinder = OBSERVABLES[self.quantity].per_cylinder
-        answer = self._evaluate(Words(excerpt, per_cylinder=per_cylinder))
+        answer = self._evaluate(excerpt)
         n = len(excerpt.theta)
         if answer.shape not in ((), (n,)):
             raise InputError(
@@ -113,17 +113,17 @@ class Formula:
         ------
         InputError : it raises, or gives other than a single finite number
         """
-        per_cylinder = NUMBERS[self.quantity].per_cylinder
-        answer = self._evaluate(Words(excerpt, per_cylinder=per_cylinder))
+        answer = self._evaluate(excerpt)
         if answer.shape != () or not np.isfinite(answer):
             text = f"an array of shape {answer.shape}" if answer.shape else str(answer)
             raise InputError(f"{self.label}: the {self.quantity} is one finite number; {text} came")
         return float(answer)
 
-    def _evaluate(self, words: Words) -> Array:
+    def _evaluate(self, excerpt: Excerpt) -> Array:
         """What the function returns, as numbers, without numpy's warnings; callers check it."""
-        values = {name: words[name] for name in self.words}
-        arguments = {k: v.copy() if isinstance(v, np.ndarray) else v for k, v in values.items()}
+        about = NUMBERS[self.quantity] if self.is_number else OBSERVABLES[self.quantity]
+        words = Words(excerpt, per_cylinder=about.per_cylinder)
+        arguments = {name: copy(words[name]) for name in self.words}  # the function may write
         try:
             with np.errstate(all="ignore"):
                 answer = self.function(**arguments)

@@ -129,8 +129,8 @@ LECTURES = {
 }
 """The lectures' formulas by the names under which they are compared; the last truncates most."""
 
-_, *_TRUNCATED = LECTURES
-_AUTHORS = dict(zip(_TRUNCATED, ("Grega", "Yi et al."), strict=True))
+_, _S0, _S1 = LECTURES
+_CALLED = {_S0: ("Grega", "S0"), _S1: ("Yi et al.", "S1")}  # authors, key
 
 
 def short_name(reference: str) -> str:
@@ -139,13 +139,7 @@ def short_name(reference: str) -> str:
     >>> short_name("S0 (motion truncated)"), short_name("closed form")
     ('Grega', 'closed form')
     """
-    return _AUTHORS.get(reference, reference)
-
-
-def _names_of(reference: str) -> set[str]:
-    """The label of a reference, what headings and figures call it, and of a lecture its key, S0."""
-    key = {reference.partition(" ")[0]} if reference in _AUTHORS else set[str]()
-    return {reference, short_name(reference)} | key
+    return _CALLED.get(reference, (reference,))[0]
 
 
 def row_of(rows: Sequence[_RowT], quantity: str, reference: str | None) -> _RowT:
@@ -162,9 +156,8 @@ def row_of(rows: Sequence[_RowT], quantity: str, reference: str | None) -> _RowT
         known = there_are(name, list(dict.fromkeys(row.quantity for row in rows)))
         raise InputError(f"no {shown(quantity)} here{known}")
     for row in alike:
-        if reference in _names_of(row.reference):
-            return row
-        if reference is None and row.reference in LECTURES:
+        by_lecture = reference is None and row.reference in LECTURES
+        if by_lecture or reference in (row.reference, *_CALLED.get(row.reference, ())):
             return row
     known = there_are(reference or "", [short_name(row.reference) for row in alike])
     by = "the lectures" if reference is None else shown(reference)

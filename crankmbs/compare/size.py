@@ -32,10 +32,9 @@ def size_of(curve: Array, angle: Array, period: float) -> Size:
     largest = float(np.max(size))
     top = top_of(curve, angle, period)
     widths = np.abs(np.diff(angle))
-    turned = float(np.sum(widths))
     scaled = (size / largest) ** 2 if largest > 0.0 else size  # no overflow, no underflow
-    if turned > 0.0:
-        mean = float(np.sum(widths * (scaled[1:] + scaled[:-1]))) / (2.0 * turned)
+    if np.any(widths):
+        mean = float(np.average(0.5 * (scaled[1:] + scaled[:-1]), weights=widths))
     else:
         mean = float(np.mean(scaled))
     return Size(largest, largest * math.sqrt(mean), float(within(angle[top], period)))

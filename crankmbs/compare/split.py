@@ -89,17 +89,14 @@ class Split:
         if math.isnan(total):
             source = "lecture" if self.is_lecture else "formula"
             return f"{subject}: the run has none, the {source} has"
-        contributing = [cause for cause in self.causes if self.share(cause) > 0.0]
-        contributing.sort(key=self.share, reverse=True)
-        parts: list[str] = []
-        for cause in contributing:
-            up_to = "" if parts else "costs up to "
-            parts.append(
-                f"{self.named(cause)} {up_to}{_readable(self.share(cause))} %, {_where(cause)}"
-            )
         if not total:
             return f"{subject}: right but for rounding"
-        if len(contributing) < len(self.causes):
+        parts: list[str] = []
+        for cause in sorted(self.causes, key=self.share, reverse=True):
+            if self.share(cause) > 0.0:
+                size = f"{_readable(self.share(cause))} %, {_where(cause)}"
+                parts.append(f"{self.named(cause)} {'' if parts else 'costs up to '}{size}")
+        if len(parts) < len(self.causes):
             parts.append("no other cause contributes")
         largest = f"off by up to {_readable(total)} % of the peak, {_where(self.total)}"
         return f"{subject}: {largest}: {'; '.join(parts)}"
@@ -112,8 +109,7 @@ class Split:
         >>> f"{split.at_largest()['two-mass rod']:.2f} of {sum(split.at_largest().values()):.2f} %"
         '-14.95 of -16.30 %'
         """
-        scale = 100.0 / self.peak if self.peak > 0.0 else math.nan
-        return {cause.name: scale * cause.at_largest for cause in self.causes}
+        return {cause.name: percent(cause.at_largest, self.peak) for cause in self.causes}
 
     def without(self, cause: Cause) -> float:
         """The largest error that is left without one cause, in percent of the run's peak."""
