@@ -7,7 +7,7 @@ from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from crankmbs.compare.between import with_points_between
+from crankmbs.compare.between import with_tops
 from crankmbs.compare.excerpt import Answer, Excerpt, LeftOut, excerpt_of, vanishing
 from crankmbs.compare.formula import CLOSED_FORM, Formula, formulas_of, variables_of
 from crankmbs.compare.lectured import LECTURES, row_of
@@ -173,7 +173,7 @@ def compare(
         del answers[CLOSED_FORM]  # by which the run itself is read there
         return _curves(answers, zero)
 
-    found = with_points_between(excerpt, _curves(answers, zero), between)
+    found = with_tops(excerpt, _curves(answers, zero), between)
     rows = tuple(
         Deviation(
             quantity=name,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from crankmbs.compare.between import Curves, with_points_between
+from crankmbs.compare.between import Curves, with_tops
 from crankmbs.compare.chain import REST, Idealized, checked_chain
 from crankmbs.compare.excerpt import Answer, Excerpt, LeftOut, excerpt_of, vanishing
 from crankmbs.compare.formula import Formula, formulas_of, variables_of
@@ -103,7 +103,7 @@ def budget(
         return _curves(there, causes, _evaluations(there, by_angle, from_datum)[0], zero)
 
     sampled = _curves(ideal, causes, evaluations, zero)
-    found = with_points_between(excerpt, sampled, between)
+    found = with_tops(excerpt, sampled, between)
     splits = tuple(
         _split(evaluation, name, found)
         for evaluation in evaluations
