@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import cmath
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -23,7 +24,7 @@ __all__ = ["Balance", "Remaining", "balance"]
 
 _ALONG = 1e-9  # of a throw's counterweight: what lies across the reference line, or is left
 _ORDERS = (1.0, 2.0)
-_VECTORS = {"frame force": "frame_force", "rocking moment": "rocking_moment"}
+_VECTORS = ("frame force", "rocking moment")
 
 
 @dataclass(frozen=True)
@@ -145,11 +146,9 @@ def balance(scene: Scene, share: float = 0.5, *, cost_cap: float = 10.0) -> Bala
         per_throw[throw] += _counterweight(gear, share)
     weights = _Weights(scene, tuple(per_throw), scene.crank.mass * scene.crank.center_of_mass)
     result = simulate(scene, cost_cap=cost_cap)
-    data = {str(name): variable.values for name, variable in result.data.variables.items()}
-    before, after = (
-        np.stack([data["frame_force_x"], data["frame_force_y"]], axis=1) + added
-        for added in (0.0, weights.on_frame(data)["frame_force"])
-    )
+    data = {name: values for name, (_, values, _) in result.variables.items()}
+    before = np.stack([data["frame_force_x"], data["frame_force_y"]], axis=1)
+    after = before + weights.on_frame(data)["frame_force"]
     remaining = tuple(_remaining(result, weights))
     return Balance(share, weights.per_throw, weights.of_crank, remaining, result, before, after)
 
@@ -210,13 +209,14 @@ class _Weights:
 
 def _remaining(result: Result, weights: _Weights) -> Iterator[Remaining]:
     harmonics = Harmonics(result, max(_ORDERS))
-    for quantity, vector in _VECTORS.items():
+    for quantity in _VECTORS:
+        vector = quantity.replace(" ", "_")
         names = [f"{vector}_{axis}" for axis in "xy"]
         if names[0] not in result.data:
             continue
         units = str(result.data[names[0]].attrs["units"])
         before = [harmonics.of(name) for name in names]
-        after = [harmonics.split(_balanced(weights, vector, k)) for k in range(2)]
+        after = [harmonics.split(partial(_balanced, weights, vector, k)) for k in range(2)]
         for order in _ORDERS:
             k = int(np.flatnonzero(harmonics.order == order)[0])
             for axis, old, new in zip("xy", before, after, strict=True):
@@ -225,14 +225,10 @@ def _remaining(result: Result, weights: _Weights) -> Iterator[Remaining]:
             yield Remaining(quantity, "largest", order, units, *longest)
 
 
-def _balanced(weights: _Weights, vector: str, axis: int) -> Callable[[Mapping[str, Array]], Array]:
+def _balanced(weights: _Weights, vector: str, axis: int, variables: Mapping[str, Array]) -> Array:
     """One component of a vector on the frame, with what the counterweights add."""
-
-    def component(variables: Mapping[str, Array]) -> Array:
-        added = weights.on_frame(variables)[vector][:, axis]
-        return np.asarray(variables[f"{vector}_{'xy'[axis]}"] + added)
-
-    return component
+    added = weights.on_frame(variables)[vector][:, axis]
+    return np.asarray(variables[f"{vector}_{'xy'[axis]}"] + added)
 
 
 def _one(split: Orders, k: int) -> Estimate:
