@@ -66,8 +66,14 @@ class Handover:
         turned_back, vain = plan.start, 0  # hand-overs that did not carry it through a period
 
         def is_fast(at: State, branch: Branch) -> bool:
-            swings = abs(at.theta - turned_back) < min(vain / _VAIN, 1.0) * period
-            return not swings and self._may(at) and self._is_fast(at, branch)
+            if not self.by_angle or at.omega == 0.0:
+                return False
+            if abs(at.theta - turned_back) < min(vain / _VAIN, 1.0) * period:
+                return False
+            # the grid is as fine as it must be where the first pass used it, and only there
+            if self.before is not None and math.isfinite(self.before.at(at.time)):
+                return False
+            return crank_angle.is_fast(self.grid, at, branch, _FAST[self.before is not None])
 
         over_time, slow = not self.by_angle or state.omega == 0.0, False
         while True:
@@ -113,13 +119,3 @@ class Handover:
             self.taken.add(segment.track.begins, segment.track.widths)
         else:
             self.taken.add([segment.begin.time], [math.inf])
-
-    def _may(self, at: State) -> bool:
-        """Whether the crank angle may carry it here."""
-        if not self.by_angle or at.omega == 0.0:
-            return False
-        # the grid is as fine as it must be where the first pass used it, and only there
-        return self.before is None or math.isinf(self.before.at(at.time))
-
-    def _is_fast(self, at: State, branch: Branch) -> bool:
-        return crank_angle.is_fast(self.grid, at, branch, _FAST[self.before is not None])
