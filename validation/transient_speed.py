@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from crankmbs import Scene, simulate
 from crankmbs.batch.machine import Pass, machine_of
-from crankmbs.batch.motion import Cases, to_times
+from crankmbs.batch.motion import Cases, Go, run
 from crankmbs.batch.rows import rows_of
 from crankmbs.scene.loads import Quadratic
 from crankmbs.sweep.columns import row_of
@@ -72,7 +72,7 @@ def _over_limit(scene: Scene, periods: int, alike: bool, seconds: Seconds) -> No
     factor = np.ones_like(by) if alike else by
     inertias, squares = scene.crank.moment_of_inertia * factor, -load.coefficient * factor
     speeds, none = scene.start.speed * by, 0.0 * by
-    starts = 0.5 * (inertias + machine.at_start) * speeds**2
+    starts = 0.5 * (inertias + tables.at_begin) * speeds**2
     given = np.stack([inertias, none, squares], axis=1)
     try:
         solve, answer = _in_c(tables, (given, starts), periods, alike)
@@ -82,8 +82,9 @@ def _over_limit(scene: Scene, periods: int, alike: bool, seconds: Seconds) -> No
     least = seconds(solve)
     ends = answer[:, 1] * (1.0 - _HAIR)
     cases = Cases(inertias, none, none, squares, speeds, ends, none)
-    own = seconds(lambda: to_times(tables, cases, machine.sense, starts, 0.0))
-    _, found = to_times(tables, cases, machine.sense, starts, 0.0)
+    go = Go(machine.sense, in_time=True)
+    own = seconds(lambda: run(tables, cases, go, starts))
+    found = run(tables, cases, go, starts)
     apart = np.max(np.abs(found.ends[:, -1] / answer[:, 0] - 1.0))
     each, what = 1e6 / (len(by) * periods), "starts" if alike else "inertia and load"
     print(
