@@ -172,21 +172,21 @@ def _powers(machine: Machine, works: Sequence[Works], time: Array) -> Numbers:
     return {name: np.concatenate([numbers[name] for numbers in every]) for name in every[0]}
 
 
-def _by_kind(scene: Scene, values: Array) -> Numbers:
-    """What joints have, shape (k, joints), by the names of their kinds."""
-    kinds = {
-        kind.joint: values[:, kind.rows if kind.of else kind.rows.start] for kind in kinds_of(scene)
+def _by_kind(scene: Scene, word: str, values: Array) -> Numbers:
+    """What joints have, shape (k, joints), by the names of their kinds and of what it is."""
+    return {
+        f"{kind.key}_{word}": values[:, kind.rows if kind.of else kind.rows.start]
+        for kind in kinds_of(scene)
     }
-    return {joint.replace(" ", "_"): value for joint, value in kinds.items()}
 
 
 def _loads(scene: Scene, word: str, values: Array) -> Numbers:
     """The same of forces, and over the areas of the shells."""
-    loads = {f"{key}_{word}": value for key, value in _by_kind(scene, values).items()}
+    loads = _by_kind(scene, word, values)
     for kind in kinds_of(scene):
-        area, key = shell_area(scene, kind.joint), kind.joint.replace(" ", "_")
+        area = shell_area(scene, kind.joint)
         if area is not None:
-            loads[f"{key}_specific_{word}"] = loads[f"{key}_{word}"] / area
+            loads[f"{kind.key}_specific_{word}"] = loads[f"{kind.key}_{word}"] / area
     return loads
 
 
@@ -211,4 +211,4 @@ def _angles(motions: Motions, peaks: Peaks, best: Index) -> Numbers:
     ]
     places = machine.begin + machine.sense * turned[:, : len(phases)] + phases
     places = np.mod(np.take_along_axis(places, best, axis=1), scene.period)
-    return {f"{key}_peak_angle": place for key, place in _by_kind(scene, places).items()}
+    return _by_kind(scene, "peak_angle", places)

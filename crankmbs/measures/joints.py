@@ -99,6 +99,11 @@ class Kind(NamedTuple):
     of: str
     rows: slice
 
+    @property
+    def key(self) -> str:
+        """How its measures are named."""
+        return self.joint.replace(" ", "_")
+
 
 def kinds_of(scene: Scene) -> list[Kind]:
     """The kinds of joints of a scene, in the order of `joints_of`.
