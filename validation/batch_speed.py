@@ -72,8 +72,7 @@ def _one_block(scene: Scene) -> None:
     own = _own(scene)
     values = [tuple(x * by for x, by in zip(own, point, strict=True)) for point in points]
     scenes = [scene_of(scene, _NAMES, each) for each in values]
-    (rows,) = rows_of(scenes)
-    error = float(rows.columns["relative_error"].max())
+    error = max(float(rows.columns["relative_error"].max()) for rows in rows_of(scenes))
     among = _seconds(lambda: rows_of(scenes)) / _BLOCK
     made = _seconds(lambda: [scene_of(scene, _NAMES, each) for each in values]) / _BLOCK
     alone = _seconds(lambda: [row_of(simulate(each), None) for each in scenes[:_ALONE]]) / _ALONE
