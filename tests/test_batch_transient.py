@@ -9,7 +9,7 @@ from beside_alone import assert_agree, by_hand
 
 from crankmbs import load_scene, simulate
 from crankmbs.batch.machine import machine_of
-from crankmbs.batch.motion import Cases, over_periods, to_times
+from crankmbs.batch.motion import Cases, Go, run
 from crankmbs.batch.rows import rows_of
 from crankmbs.batch.serves import loads_of
 from crankmbs.batch.solve import solved_together
@@ -185,22 +185,19 @@ def test_a_run_that_comes_to_rest_or_turns_back_is_followed_alone(until, load):
     assert np.min(result.data["crank_speed"].values) < 100.0
 
 
-def over(case, periods, passes=over_periods):
-    """The course of a case of the propeller's machine: inertia of the crank, c0, c1, c2 and the
-    energy at the start."""
+def over(case, end, in_time=False):
+    """The course of a case of the propeller's machine up to an end: inertia of the crank, c0, c1,
+    c2 and the energy at the start."""
     machine, (*own, energy) = machine_of(PROPELLER), case
-    cases = Cases(*np.array([[*own, 300.0, periods, 1e-9]]).T)
-    start = np.array([energy])
-    if passes is to_times:
-        return to_times(machine.answer, cases, machine.sense, start, 0.0)[1]
-    return over_periods(machine.answer, cases, machine.sense, (0, start), 0.0)
+    cases = Cases(*np.array([[*own, 300.0, end, 1e-9]]).T)
+    return run(machine.answer, cases, Go(machine.sense, in_time), np.array([energy]))
 
 
 def test_leaping_over_periods_is_passing_them():
     for c2 in (-1e-4, 0.0):
         plain = over([0.02, 1.0, 0.0, c2, 2500.0], 9)
         viscous = over([0.02, 1.0, -1e-15, c2, 2500.0], 9)  # passes period after period
-        for one, other in zip(plain, viscous, strict=True):
+        for one, other in zip(plain[:-1], viscous[:-1], strict=True):
             np.testing.assert_allclose(one, other, rtol=1e-12)
 
 
@@ -215,7 +212,7 @@ def test_the_least_energy_is_that_of_all_periods():
 
 def test_the_least_energy_in_time_is_that_of_all_periods():
     falling = [0.02, 0.0, 0.0, -3e-4, 2500.0]
-    short, long = (over(falling, time, to_times).least[0] for time in (0.06, 0.3))
+    short, long = (over(falling, time, in_time=True).least[0] for time in (0.06, 0.3))
     assert long < short < 2500.0
 
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from crankmbs import Scene, simulate
 from crankmbs.batch.machine import Pass, machine_of
-from crankmbs.batch.motion import Cases, to_times
+from crankmbs.batch.motion import Cases, Go, run
 from crankmbs.batch.rows import rows_of
 from crankmbs.scene.loads import Quadratic
 from crankmbs.sweep.columns import row_of
@@ -53,13 +53,14 @@ def _one_block(scene: Scene, until: str, seconds: Seconds) -> None:
     values = own * np.random.default_rng(1).uniform(1.0, 1.5, (_BLOCK, 2))
     names = "start.speed", "crank.inertia"
     scenes = [scene_of(scene, names, tuple(each)) for each in values.tolist()]
-    (rows,) = rows_of(scenes)
+    found = rows_of(scenes)
     among = seconds(lambda: rows_of(scenes)) / _BLOCK
     alone = seconds(lambda: [row_of(simulate(one), None) for one in scenes[:_ALONE]]) / _ALONE
+    error = max(float(rows.columns["relative_error"].max()) for rows in found)
+    count = sum(len(rows.which) for rows in found)
     print(
-        f"  {until}: a case among {len(rows.which)} takes {1e3 * among:.3f} ms, alone "
-        f"{1e3 * alone:.1f} ms, {alone / among:.0f} times as long; error "
-        f"{float(rows.columns['relative_error'].max()):.1e}"
+        f"  {until}: a case among {count} takes {1e3 * among:.3f} ms, alone {1e3 * alone:.1f} ms, "
+        f"{alone / among:.0f} times as long; error {error:.1e}"
     )
 
 
@@ -72,7 +73,7 @@ def _over_limit(scene: Scene, periods: int, alike: bool, seconds: Seconds) -> No
     factor = np.ones_like(by) if alike else by
     inertias, squares = scene.crank.moment_of_inertia * factor, -load.coefficient * factor
     speeds, none = scene.start.speed * by, 0.0 * by
-    starts = 0.5 * (inertias + machine.at_start) * speeds**2
+    starts = 0.5 * (inertias + tables.at_begin) * speeds**2
     given = np.stack([inertias, none, squares], axis=1)
     try:
         solve, answer = _in_c(tables, (given, starts), periods, alike)
@@ -82,8 +83,9 @@ def _over_limit(scene: Scene, periods: int, alike: bool, seconds: Seconds) -> No
     least = seconds(solve)
     ends = answer[:, 1] * (1.0 - _HAIR)
     cases = Cases(inertias, none, none, squares, speeds, ends, none)
-    own = seconds(lambda: to_times(tables, cases, machine.sense, starts, 0.0))
-    _, found = to_times(tables, cases, machine.sense, starts, 0.0)
+    go = Go(machine.sense, in_time=True)
+    own = seconds(lambda: run(tables, cases, go, starts))
+    found = run(tables, cases, go, starts)
     apart = np.max(np.abs(found.ends[:, -1] / answer[:, 0] - 1.0))
     each, what = 1e6 / (len(by) * periods), "starts" if alike else "inertia and load"
     print(

@@ -22,7 +22,7 @@ from crankmbs.mechanics.newton_euler import UNITS
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.scene.scene import Scene
 
-__all__ = ["CURVES", "EACH", "LINEAR", "Deviations"]
+__all__ = ["CURVES", "EACH", "LINEAR", "OF_RUN", "Deviations"]
 
 EACH = 1 + len(LECTURES)
 """Curves of every quantity: itself, and what it is more than each lecture says."""
@@ -34,33 +34,45 @@ _OF_ANGLE = ("piston displacement", "gas torque")  # alone
 _MOVING = np.array([[1.0], [0.0]])  # the speed, of what a lecture adds up: inertia, and gas
 
 
+OF_RUN = (
+    *("piston_displacement", "piston_velocity", "piston_acceleration", "rod_angle", "side_force"),
+    *(
+        f"{joint}_force_{axis}"
+        for joint in ("piston_pin", "crank_pin", "main_bearing")
+        for axis in "xy"
+    ),
+    *("crank_torque", "gas_force", "net_pressure"),
+)
+"""The variables that they are made of."""
+
+
 @dataclass(frozen=True)
 class Deviations:
     """A, B, C and D of every curve in the cells of a period, of several machines.
 
-    theta, crank, cylinders : crank angles [rad] at the s nodes of the m cells of a share of the
-        period, shape (machines, m, s), and the variables of `crankmbs.batch.balances` there
+    theta : crank angles [rad] at the s nodes of the m cells of a share of the period, shape
+        (machines, m, s)
+    variables : those of `OF_RUN` at all these, one machine after the other, as
+        `crankmbs.batch.balances` has them
     turns : the cylinder that is in the first share where the first one is in each
-    sparse : numbers of nodes of all shares, shape (n,); of_case : machine of each case
+    sparse : numbers of nodes of a share, shape (n,)
     """
 
     scenes: Sequence[Scene]
     theta: Array
-    crank: dict[str, Array]
-    cylinders: dict[str, Array]
+    variables: dict[str, Array]
     turns: Index
     sparse: Index
-    of_case: Index
 
     @cached_property
     def at_sparse(self) -> Array:
-        """At the sparse nodes, shape (n, machines, 4, curves)."""
-        (count, m, s), (first, *_) = self.theta.shape, np.split(self.sparse, len(self.turns))
-        run, lectures = self._parts(np.add.outer(m * s * np.arange(count), first).ravel())
+        """At the sparse nodes of all shares, shape (n, machines, 4, curves)."""
+        count, m, s = self.theta.shape
+        run, lectures = self._parts(np.add.outer(m * s * np.arange(count), self.sparse).ravel())
         table = np.empty((len(QUANTITIES), EACH, 4, *run.shape[2:]))
         table[:, :, :3], table[:, :, 3] = run[:, None], run[:, None, 0]
         table[:, :, 2:] -= lectures[:, :, ::-1]
-        table = table.reshape(CURVES, 4, -1, count, len(first)).transpose(2, 4, 3, 1, 0)
+        table = table.reshape(CURVES, 4, -1, count, len(self.sparse)).transpose(2, 4, 3, 1, 0)
         return table.reshape(-1, count, 4, CURVES)
 
     @cached_property
@@ -71,7 +83,7 @@ class Deviations:
     def at(self, case: Index, cell: Index, curve: Index) -> Array:
         """Of some curves of cases at the nodes of some cells, shape (4, c, s)."""
         (count, m, s), (share, cell) = self.theta.shape, np.divmod(cell, self.theta.shape[1])
-        cell += m * self.of_case[np.minimum(case, len(self.of_case) - 1)]
+        cell += m * np.minimum(case, count - 1)
         marked = np.bincount(cell, minlength=count * m) > 0
         if (marked > self._known[0]).any():
             marked |= self._known[0]
@@ -92,9 +104,7 @@ class Deviations:
         no numbers where one says nothing."""
         of, theta, scene = nodes // self.theta[0].size, self.theta.ravel()[nodes], self.scenes[0]
         bodies = Bodies(*np.array([bodies_of(one) for one in self.scenes]).T[..., of, np.newaxis])
-        variables = {name: each.take(nodes, -1) for name, each in self.crank.items()} | {
-            name: np.moveaxis(each.take(nodes, -1), 0, -1) for name, each in self.cylinders.items()
-        }
+        variables = {name: each.take(nodes, axis=1) for name, each in self.variables.items()}
         phi = cycle_angles(scene, theta)
         answer = observed(bodies, variables, phi, UNITS.square, UNITS.alpha)
         run = np.zeros((len(QUANTITIES), 3, len(self.turns), len(theta)))
@@ -107,9 +117,8 @@ class Deviations:
                 part[:] = values
         lectures = np.empty((len(QUANTITIES), EACH, 2, *run.shape[2:]))
         lectures[:, 0] = 0.0
-        gas, made = variables["gas_pressure"][0], dict[object, Any]()
-        difference = np.stack([0.0 * gas.T, gas.T]).swapaxes(1, 2)
-        motion = _MOVING, 0.0 * _MOVING
+        gas, made = variables["net_pressure"], dict[object, Any]()
+        difference, motion = np.concatenate([0.0 * gas, gas]), (_MOVING, 0.0 * _MOVING)
         for by, formulas in enumerate(LECTURES.values(), start=1):
             try:
                 made |= {one: one(phi, bodies) for one in formulas if one not in made}

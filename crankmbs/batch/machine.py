@@ -8,17 +8,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass, replace
-from itertools import compress
+from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crankmbs.batch.balances import balances
-from crankmbs.batch.lectures import Deviations
+from crankmbs.batch.balances import by_powers, without_crank
+from crankmbs.batch.lectures import OF_RUN, Deviations
 from crankmbs.batch.peaks import sparse_nodes
 from crankmbs.measures.joints import joints_of
+from crankmbs.measures.summary import Works, works_of
 from crankmbs.mechanics.axes import axes_of
 from crankmbs.mechanics.geometry import close_loop
 from crankmbs.mechanics.train import CrankTrain, crank_train
@@ -29,21 +29,12 @@ from crankmbs.numerics.once import once
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
 
-__all__ = [
-    "Machine",
-    "Pass",
-    "ahead_of",
-    "at_cell",
-    "family_of",
-    "forces_of",
-    "key_of",
-    "machine_of",
-]
+__all__ = ["Machine", "Pass", "family_of", "forces_of", "key_of", "machine_of", "periods_of"]
 
 _WIDEST = 12.0 * DEGREE  # of a cell
 _NARROW = 4.0 * DEGREE  # of a cell, on average
 _FEW, _MANY = (6, 5), (10, 8)  # stages of the answer's rule and of its check's
-_SLIVER = 1e-9  # rad: a start so near an edge is on it
+_SLIVER = 1e-9  # rad: an angle so near an edge is on it
 _SAME = 1e-12  # rad: of phases, no more than rounding
 _FOLDED = 0.05  # cosine of the rod angle
 
@@ -54,41 +45,30 @@ class Pass(NamedTuple):
 
     width : of the cells [rad], shape (machines, m); at_begin : J without the crank's where they
         begin, shape (machines,)
-    inertia, slope, torque : J without the crank's, dJ/dtheta and the torque, shape (machines, m, s)
+    inertia, torque : J without the crank's, and the torque, shape (machines, m, s)
     rods : torque of all rods, shape (machines, 3, m, s)
     forces : of the joints, as `crankmbs.measures.joints.joints_of` lists them, shape (machines,
         joints, 2, 3, m, s)
-    works : of gas and friction on the pistons there, shape (machines, rows, cylinders) [J]: the
-        gas, the friction, and of double-acting cylinders the gas of the head end and of the crank
-        end
+    works : of gas and friction on the pistons there, of each machine
     """
 
     rule: Rule
     lectures: Deviations
+    works: Sequence[Works]
     width: Array
     at_begin: Array
     inertia: Array
-    slope: Array
     torque: Array
     rods: Array
     forces: Array
-    works: Array
-
-    def part(self, which: NDArray[np.bool_]) -> Pass:
-        """Those of some machines."""
-        lectures = replace(self.lectures, of_case=self.lectures.of_case[which])
-        return Pass(self.rule, lectures, *(table[which] for table in self[2:]))
 
 
 @dataclass(frozen=True)
 class Machine:
     """What motions share: of one machine, or each of one of its own.
 
-    scenes : one of each machine; sense : of rotation; answer, check : tables of either pass;
-        finest : whether by the finest rules
-    begin : crank angle at which the tables begin [rad]; first : number of the cell at whose
-        beginning a motion starts; at_start : J there, without the crank's, shape (machines,)
-        [kg m2]
+    scenes : one of each machine; sense : of rotation; answer, check : tables of either pass, from
+        the crank angle of the start on [rad]; finest : whether by the finest rules
     shares : in how many equal shares of the period all comes again with another cylinder; the
         tables are those of one
     """
@@ -99,8 +79,6 @@ class Machine:
     check: Pass
     finest: bool
     begin: float
-    first: int
-    at_start: Array
     shares: int
 
     @property
@@ -113,26 +91,6 @@ class Machine:
         """Whether motions end at a time."""
         return self.scene.end[1] and not self.scene.settles
 
-    def part(self, which: NDArray[np.bool_]) -> Machine:
-        """What some of the motions share."""
-        if len(self.scenes) == 1:
-            return self
-        return replace(
-            self,
-            scenes=tuple(compress(self.scenes, which)),
-            answer=self.answer.part(which),
-            check=self.check.part(which),
-            at_start=self.at_start[which],
-        )
-
-
-class _Cells(NamedTuple):
-    """Edges, angles turned [rad] from where the tables begin; `shares` and `first` of `Machine`."""
-
-    edges: Array
-    shares: int
-    first: int
-
 
 def key_of(scene: Scene) -> Hashable:
     """What two scenes have in common that share a machine; scenes that start and turn."""
@@ -142,11 +100,12 @@ def key_of(scene: Scene) -> Hashable:
 def _alike(scene: Scene) -> Hashable:
     """What machines that are tabulated together have in common, but the shape of their tables."""
     assert scene.start is not None
+    in_time = scene.end[1]
     return (
         (scene.crank.mass, scene.crank.center_of_mass, scene.cylinders),
         (scene.gravity, scene.friction, scene.bearings),
         (scene.start.angle, scene.start.speed > 0.0),
-        (scene.settles, scene.end[1], ahead_of(scene)),
+        (scene.settles, in_time, in_time or periods_of(scene) % 1.0),
     )
 
 
@@ -161,73 +120,68 @@ def family_of(scene: Scene) -> Hashable:
     angles, (gear, *_) = np.linspace(0.0, 2.0 * math.pi, 361), scene.running_gear
     if np.min(close_loop(angles, *gear.shape).cos_beta) < _FOLDED:
         return None
-    gas, cells = scene.gas, _cells_of(scene)
-    ends = gas is not None, scene.double_acting
-    return _alike(scene), ends, len(cells.edges), cells.first, cells.shares
+    edges, shares = _cells_of(scene)
+    return _alike(scene), scene.gas is not None, scene.double_acting, len(edges), shares
 
 
 def forces_of(scene: Scene) -> int:
     """How many forces of joints the tables of a machine have at nodes."""
-    return len(joints_of(scene)) * len(_cells_of(scene).edges) * _MANY[0] * 2
+    edges, _ = _cells_of(scene)
+    return len(joints_of(scene)) * len(edges) * _stages(edges)[0] * 2
 
 
-def ahead_of(scene: Scene) -> float:
-    """The angle [rad] from the start of a scene to where its last period begins, less whole ones;
-    0 where it ends at a time.
+def periods_of(scene: Scene) -> float:
+    """In how many periods a run ends, of one that ends at an angle.
 
-    >>> ahead_of(load_scene("yi_diesel_free"))
-    0.0
+    >>> periods_of(load_scene("propeller").with_(run__until="1800 deg"))
+    2.5
     """
-    end, in_time = scene.end
-    rest = 0.0 if in_time else end % scene.period
-    return 0.0 if min(rest, scene.period - rest) < _SLIVER else rest
+    periods = scene.end[0] / scene.period
+    whole = round(periods)
+    return whole if abs(periods - whole) * scene.period < _SLIVER else periods
 
 
 def machine_of(*scenes: Scene, finest: bool = False) -> Machine:
-    """The tables of scenes' machines of one family, over a period from where the last one begins
-    on, by rules with few nodes where cells are narrow; or by the finest.
+    """The tables of scenes' machines of one family, over a period from their start on, by rules
+    with few nodes where cells are narrow; or by the finest.
 
     >>> machine_of(load_scene("yi_diesel_free").with_(run__until="settled")).shares
     4
     """
-    scene = scenes[0]
-    assert scene.start is not None
-    sense, start = math.copysign(1.0, scene.start.speed), scene.start.angle
-    begin = start + sense * ahead_of(scene)
-    trains = [crank_train(each) for each in scenes]
-    edges = np.array([_cells_of(each).edges for each in scenes])
-    _, shares, first = _cells_of(scene)
-    narrow = float(np.mean(np.diff(edges))) < _NARROW and not finest
+    start, trains = scenes[0].start, [crank_train(scene) for scene in scenes]
+    assert start is not None
+    sense, shares = math.copysign(1.0, start.speed), _cells_of(scenes[0])[1]
+    edges = np.array([_cells_of(scene)[0] for scene in scenes])
+    stages, of_check = _MANY if finest else _stages(edges), [train.perturbed for train in trains]
     answer, check = (
-        _tabulated(of_pass, begin, sense, gauss(stages), np.diff(edges), shares)
-        for of_pass, stages in zip(
-            (trains, [train.perturbed for train in trains]),
-            _FEW if narrow else _MANY,
-            strict=True,
-        )
+        _tabulated(of_pass, (start.angle, sense), gauss(count), edges, shares)
+        for of_pass, count in zip((trains, of_check), stages, strict=True)
     )
-    at_start = _without_crank(trains, start, sense)
-    return Machine(scenes, sense, answer, check, not narrow, begin, first, at_start, shares)
+    return Machine(scenes, sense, answer, check, stages == _MANY, start.angle, shares)
+
+
+def _stages(edges: Array) -> tuple[int, int]:
+    """Stages of the rules of answer and check in cells with these edges, shape (..., m + 1)."""
+    return _FEW if float(np.mean(np.diff(edges))) < _NARROW else _MANY
 
 
 @once
-def _cells_of(scene: Scene) -> _Cells:
-    """The cells of a scene's machine, of a share of the period."""
+def _cells_of(scene: Scene) -> tuple[Array, int]:
+    """Edges of the cells of a scene's machine, angles turned [rad] from the start on, of a share of
+    the period, and in how many shares all comes again."""
     assert scene.start is not None
-    train, sense, ahead = crank_train(scene), math.copysign(1.0, scene.start.speed), ahead_of(scene)
-    starts = (train.period - ahead) % train.period
+    train, sense = crank_train(scene), math.copysign(1.0, scene.start.speed)
     parts, shares = _shares(train) if scene.settles else (1, 1)
-    edges = _edges(train, scene.start.angle + sense * ahead, sense, parts, starts)
-    edges = edges[: (len(edges) - 1) // shares + 1]
-    return _Cells(edges, shares, int(np.argmin(np.abs(edges[:-1] - starts))))
+    edges = _edges(train, scene.start.angle, sense, parts)
+    return edges[: (len(edges) - 1) // shares + 1], shares
 
 
-def _edges(train: CrankTrain, begin: float, sense: float, parts: int, more: float) -> Array:
+def _edges(train: CrankTrain, begin: float, sense: float, parts: int) -> Array:
     """Of the cells, angles turned [rad] from 0 to a period, so that no knot of the pressure lies in
-    one, and ``more`` is one of them; the same in equal parts of the period."""
+    one; the same in equal parts of the period."""
     part = train.period / parts
     edges = np.mod(sense * (grid_of(train, gauss(1), _WIDEST).edges[:-1] - begin), part)
-    edges = np.unique(np.concatenate([[0.0, more], edges, [part]]))
+    edges = np.unique(np.concatenate([[0.0], edges, [part]]))
     edges = edges[np.append(np.diff(edges) > _SLIVER, True)]
     edges[0] = 0.0
     every = np.add.outer(part * np.arange(parts), edges[:-1])
@@ -259,54 +213,39 @@ def _turns(train: CrankTrain, sense: float, shares: int) -> Index:
     return np.asarray(np.argmax(np.cos(2.0 * math.pi / train.period * behind), axis=1))
 
 
-def at_cell(table: Array, cell: Index) -> Array:
-    """Of k cases what a table of theirs, shape (machines, ..., m, s), has in a cell of each, shape
-    (k, ..., s).
-
-    >>> at_cell(np.arange(6.0).reshape(1, 3, 2), np.array([2, 0, 2]))[:, 1].tolist()
-    [5.0, 1.0, 5.0]
-    """
-    return np.asarray(table[np.minimum(np.arange(len(cell)), len(table) - 1), ..., cell, :])
-
-
 def _tabulated(
-    trains: Sequence[CrankTrain], begin: float, sense: float, rule: Rule, width: Array, shares: int
+    trains: Sequence[CrankTrain],
+    start: tuple[float, float],
+    rule: Rule,
+    edges: Array,
+    shares: int,
 ) -> Pass:
-    """The tables at the nodes of a rule in every cell."""
-    scenes, whole = [train.scene for train in trains], np.tile(width, shares)
-    turned = np.cumsum(width, axis=1)[..., None] + width[..., None] * (rule.nodes - 1.0)
-    theta, machines = begin + sense * turned, np.arange(len(trains))
-    of = np.repeat(machines, theta[0].size)
-    inertia, crank, cylinders, pushes = balances(trains, of, theta.ravel(), sense)
-    points: dict[str, Array] = {name: each.ravel() for name, each in crank.items()}
-    points |= {name: each.reshape(len(each), -1).T for name, each in cylinders.items()}
-    forces = np.array([joint.force(points) for joint in joints_of(scenes[0])])
-
-    def by_machine(table: Array) -> Array:
-        """The machines in front, and the nodes of each cell apart: of shape (..., n)."""
-        shaped = table.reshape(*table.shape[:-1], *theta.shape)
-        return np.ascontiguousarray(np.moveaxis(shaped, -3, 0))
-
-    rods = cylinders["journal_torque"][-1]
-    slope, torque = -2.0 * rods[0], -crank["external_torque"][2]
-    path = sense * (width[..., None] * rule.weights).ravel() * cylinders["piston_velocity"][:, 0]
+    """The tables at the nodes of a rule in every cell, from an angle on in a sense of rotation;
+    edges : of the cells of each machine, shape (machines, m + 1)."""
+    (begin, sense), width = start, np.diff(edges)
+    theta = begin + sense * (edges[:, :-1, None] + width[..., None] * rule.nodes)
+    variables, works, tables = [], [], []
+    for train, angles, wide in zip(trains, theta, width[..., None], strict=True):
+        of, scene = by_powers(train, angles.ravel(), sense), train.scene
+        at_begin = without_crank(scene, np.array([begin]))
+        forces = np.array([joint.force(of) for joint in joints_of(scene)])
+        of_angle, path = {name: each[0] for name, each in of.items()}, sense * wide * rule.weights
+        works.append(works_of(scene, of_angle, partial(_over_period, path.ravel(), shares)))
+        rods = of["crank_torque"].sum(axis=-1)
+        tables.append((at_begin, -rods[1], -of["external_torque"][2], rods, forces))
+        variables.append([of[name] for name in OF_RUN])
+    begins, *others = (np.stack(each) for each in zip(*tables, strict=True))
+    shaped = (table.reshape(*table.shape[:-1], *theta.shape[1:]) for table in others)
+    sparse = sparse_nodes(width.max(axis=0), len(rule.nodes))
     turns = _turns(trains[0], sense, shares)
-    sparse = sparse_nodes(whole.max(axis=0), len(rule.nodes))
-    return Pass(
-        rule,
-        Deviations(scenes, theta, crank, cylinders, turns, sparse, machines),
-        width,
-        _without_crank(trains, begin, sense),
-        by_machine(inertia),
-        by_machine(slope),
-        by_machine(torque),
-        by_machine(rods),
-        by_machine(forces.reshape(-1, 2, 3, theta.size)),
-        by_machine(path * pushes).sum(axis=(-2, -1)),
-    )
+    joined = (np.concatenate(each, axis=1) for each in zip(*variables, strict=True))
+    of_run = dict(zip(OF_RUN, joined, strict=True))
+    lectures = Deviations([train.scene for train in trains], theta, of_run, turns, sparse)
+    return Pass(rule, lectures, works, width, begins[:, 0], *shaped)
 
 
-def _without_crank(trains: Sequence[CrankTrain], theta: float, sense: float) -> Array:
-    """J at a crank angle [rad] without the crank's [kg m2]; the same whichever crank it has."""
-    count = len(trains)
-    return balances(trains, np.arange(count), np.full(count, theta), sense).inertia
+def _over_period(path: Array, shares: int, power: Array) -> Array:
+    """The integral over the whole period, in cylinders, of what they have in a share of it, shape
+    (n, cylinders): what one has there another has in the next one."""
+    works = path @ power
+    return works if shares == 1 else works.sum(keepdims=True) + 0.0 * works

@@ -4,206 +4,167 @@ those of two."""
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from collections.abc import Sequence
 
 import numpy as np
 
-from crankmbs.batch.lectures import CURVES, EACH, LINEAR
-from crankmbs.batch.machine import Machine, Pass, at_cell
-from crankmbs.batch.motion import Cases, Cuts
-from crankmbs.batch.passes import Pairs, Solved
-from crankmbs.batch.peaks import Curves, Peaks, Which, find_peaks, sizes_at, sparse_nodes
-from crankmbs.measures.estimate import ROUNDING, Number
+from crankmbs.batch.curves import Motions
+from crankmbs.batch.machine import Machine
+from crankmbs.batch.motion import Cases, Courses
+from crankmbs.batch.peaks import Peaks, find_peaks, sizes_at
+from crankmbs.batch.pressures import highest_pressures
+from crankmbs.measures.estimate import ROUNDING
+from crankmbs.measures.joints import joints_of, kinds_of, shell_area
 from crankmbs.measures.summary import Works, powers
-from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.lagrange import at_nodes
 from crankmbs.numerics.magnitudes import impulses
+from crankmbs.scene.scene import Scene
 
-__all__ = ["Numbers", "by_turns", "measure"]
+__all__ = ["Numbers", "measure"]
 
 Numbers = dict[str, Array]
 """By name, of k cases, shape (k, ...)."""
 
 
-class _Motions(NamedTuple):
-    """At the nodes: omega^2, alpha, omega and 1 / |omega|, shape (k, m, s); the torque of the
-    loads. With cuts the cells are whole, with one more."""
-
-    square: Array
-    alpha: Array
-    omega: Array
-    slow: Array
-    load: Array
-
-
-def measure(pairs: Pairs) -> tuple[Numbers, Numbers]:
+def measure(machine: Machine, cases: Cases, passes: Sequence[Courses]) -> tuple[Numbers, Numbers]:
     """The numbers of k motions, and by how much they may be off: what those of both passes differ
     by, their rounding, and what polynomials may miss of peaks.
 
     Returns
     -------
-    those of `_numbers`; angles, turned from where the tables begin to the peaks of joints [rad];
-    closure, the largest difference of the energies of both passes over the greatest energy;
-    relative, the largest error of the speed and of the peaks of joints, relative
+    duration [s] of a period; energy where it begins [J]; growth of a disturbance, less 1; fast and
+    slow, highest and lowest speed [rad/s] without sense; lectures, the largest size of every
+    quantity of theirs and of what it is more than each of them says, shape (k, curves); closure,
+    the largest difference of the energies of both passes over the greatest energy; relative, the
+    largest error of the speed and of the peaks of joints, relative; of each joint where its peak
+    is [rad]; and what `crankmbs.measures.names.names_of` has but pressures
     """
-    machine, (one, other) = pairs.machine, pairs.passes
-    answer, peaks = _numbers(machine, one, pairs.cases, None)
-    check, _ = _numbers(machine, other, pairs.cases, peaks)
-    rounded = {"speed_gain": answer["fast"], "fluctuation": answer["fast"] / answer["mean_speed"]}
-    rounded["kinetic_power"] = answer["greatest"] / answer["duration"]
-    rounded |= dict.fromkeys(("torque_max", "torque_min"), answer.pop("level"))
+    one, other = (
+        Motions(machine, *each, cases)
+        for each in zip((machine.answer, machine.check), passes, strict=True)
+    )
+    answer, check = _integrals(one), _integrals(other)
+    curves = [one.curves, one.of_lectures(answer["mean_speed"])]
+    again = [other.curves, other.of_lectures(check["mean_speed"])]
+    peaks = [find_peaks(each) for each in curves]
+    there = [sizes_at(each, of) for each, of in zip(again, peaks, strict=True)]
+    best, mean = _best(machine, peaks[0].size), answer["mean_speed"]
+    answer |= _of_peaks(one, [of.size for of in peaks], best, mean)
+    check |= _of_peaks(other, there, best, check["mean_speed"])
+    missed = _of_peaks(one, [of.size + of.missed for of in peaks], best, mean)
+    greatest, fast = one.courses.energy.max(axis=(1, 2)), answer["fast"]
+    rounded = {"speed_gain": fast, "fluctuation": fast / mean}
+    rounded["kinetic_power"] = greatest / answer["duration"]
+    rounded |= dict.fromkeys(("torque_max", "torque_min"), one.levels[0])
     errors = {
         name: np.abs(value - check[name]) + ROUNDING * np.abs(rounded.get(name, value))
         for name, value in answer.items()
     }
-    missed = peaks["vectors"].missed
-    for name, column in zip(
-        ("torque_max", "torque_min", "fast", "slow"), missed.T[-4:], strict=True
-    ):
-        errors[name] += column
-    errors["fluctuation"] += missed[:, -2:].sum(axis=1) / np.abs(answer["mean_speed"])
-    steepest = np.abs(pairs.cases.c1) + 2.0 * np.abs(pairs.cases.c2) * answer["fast"]
-    for name in ("external_torque_max", "external_torque_min"):
-        errors[name] += steepest * missed[:, -2:].sum(axis=1)
-    errors["peaks"] += missed[:, :-4]
-    for numbers, sense in ((answer, machine.sense), (errors, 1.0)):
-        extremes = [sense * numbers[name] for name in ("fast", "slow")]
-        numbers["highest_speed"], numbers["lowest_speed"] = extremes[:: int(machine.sense)]
-    errors["lectures"] += peaks["lectures"].missed
+    for name, value in missed.items():
+        errors[name] += np.abs(value - answer[name])
     apart = np.abs(one.courses.ends - other.courses.ends).max(axis=1)
-    answer["closure"] = apart / answer["greatest"] + ROUNDING
-    shown = ("duration", "fast", "slow", "peaks")
-    with np.errstate(invalid="ignore"):  # a joint without a force
-        parts = [np.nan_to_num(errors[name] / np.abs(answer[name])).T for name in shown]
+    answer["closure"] = apart / greatest + ROUNDING
+    angles = _angles(one, peaks[0], best)
+    shown = ("duration", "fast", "slow", *(name.removesuffix("_angle") for name in angles))
+    parts = [np.nan_to_num(errors[name] / np.abs(answer[name])).T for name in shown]
     answer["relative"] = np.vstack(parts).max(axis=0)
-    of, (begin, width) = peaks["vectors"], _places(one)
-    case = np.minimum(np.arange(len(of.cell)), len(width) - 1)[:, None]
-    answer["angles"] = (begin[case, of.cell] + of.place * width[case, of.cell])[:, :-4]
-    return answer, errors
+    for name, (value, error) in _pressures(machine.scenes).items():
+        answer[name], errors[name] = (each + 0.0 * fast[:, None] for each in (value, error))
+    return answer | angles, errors
 
 
-def _places(solved: Solved) -> tuple[Array, Array]:
-    """Angles turned [rad] to where cells begin, and their widths, shape (1 or k, cells)."""
-    width, cuts = solved.tables.width, solved.cuts
-    begin = np.cumsum(width, axis=1) - width
-    if cuts is None:
-        return begin, width
-    cell, place = cuts
-    begin, width = (
-        np.append(row + 0.0 * place[:, None], at_cell(row[..., None], cell), axis=1)
-        for row in (begin, width)
-    )
-    before = place * width[:, -1]
-    begin[:, -1] += before
-    width[:, -1] -= before
-    width[np.arange(len(cell)), cell] = before
-    return begin, width
+def _pressures(scenes: Sequence[Scene]) -> dict[str, Array]:
+    """The highest pressures in every cylinder of machines, and their errors [Pa]."""
+    every = [highest_pressures(scene) for scene in scenes]
+    names = every[0]
+    return {name: np.stack([highest[name] for highest in every], axis=1) for name in names}
 
 
-def _numbers(
-    machine: Machine, solved: Solved, cases: Cases, known: dict[str, Peaks] | None
-) -> tuple[Numbers, dict[str, Peaks]]:
-    """The numbers of a pass over k cases, and where its peaks are; known : the peaks of another
-    pass, which are looked at where they are, and not sought.
-
-    Returns
-    -------
-    duration [s] of a period; greatest energy, and that where the period begins [J]; growth of a
-    disturbance, less 1; highest and lowest speed [rad/s], without sense; of every joint's force the
-    peak and the mean over time, shape (k, joints) [N]; the level that the torque's extremes are
-    measured from [N m]; the largest size of every quantity of the
-    lectures and of what it is more than each of them says, shape (k, curves); and what
-    `crankmbs.measures.Measures` has by these names
-    """
-    (tables, courses, cuts), of = solved, _motions(solved, machine.sense, cases)
-    width, turned = _places(solved)[1][..., None], float(machine.answer.width[0].sum())
-    share, rods = width * tables.rule.weights, _combined(tables.rods, of, cuts)
-    slow, load = of.slow, of.load
-    fastest, strongest = (np.abs(each).max(axis=(1, 2)) for each in (of.omega, rods))
-    forces = _combined(tables.forces, of, cuts)
-    top = 2.0 * strongest
-    extremes = _extremes((rods, top, top), (np.abs(of.omega), 0.0, 2.0 * fastest))
-    vectors = np.concatenate([forces, extremes], axis=1)
-    if cuts is not None:
-        slow, load, rods, vectors = (_cut(each, cuts) for each in (slow, load, rods, vectors))
+def _integrals(motions: Motions) -> Numbers:
+    """What does not depend on peaks; means of the forces of all joints, shape (k, joints)."""
+    machine, tables, courses = motions.machine, motions.tables, motions.courses
+    width, turned = motions.places[1][..., None], float(tables.width[0].sum())
+    share, joints = width * tables.rule.weights, len(joints_of(machine.scene))
+    of_nodes = 1.0 / np.abs(motions.omega), motions.rods, motions.load
+    slow, rods, load = (motions.cut(each) for each in of_nodes)
     time = (share * slow).sum(axis=(1, 2))
     mean = machine.sense * turned / time
-    sizes = np.sqrt(np.einsum("krcms,krcms->krms", vectors, vectors))
-    curves = {
-        "vectors": _curves(tables, vectors, sizes, cuts),
-        "lectures": _of_lectures(tables, of, mean, cuts),
-    }
-    peaks = known or {name: find_peaks(each) for name, each in curves.items()}
-    if known is None:
-        largest, lectures = peaks["vectors"].size, peaks["lectures"].size
-    else:
-        largest, lectures = (sizes_at(each, known[name]) for name, each in curves.items())
-    fast, slowest = largest[:, -2], 2.0 * fastest - largest[:, -1]
-    polynomials = at_nodes(sizes.shape[-1])
-    means = impulses(polynomials, vectors[:, :-4], sizes[:, :-4], width * slow) / time[:, None]
+    forces, sizes = motions.vectors[:, :joints], motions.sizes[:, :joints]
+    means = impulses(at_nodes(slow.shape[-1]), forces, sizes, width * slow) / time[:, None]
+    if machine.shares > 1:
+        for kind in kinds_of(machine.scene):
+            means[:, kind.rows] = means[:, kind.rows].mean(axis=1, keepdims=True)
     strokes = np.array([[gear.stroke for gear in one.running_gear] for one in machine.scenes])
     numbers = {
         "duration": machine.shares * time,
-        "greatest": courses.energy.max(axis=(1, 2)),
         "energy": courses.begin,
         "growth": courses.growth,
-        "fast": fast,
-        "slow": slowest,
-        "peaks": largest[:, :-4],
-        "means": means,
-        "lectures": lectures,
-        "level": top,
-        "torque_max": largest[:, -4] - top,
-        "torque_min": top - largest[:, -3],
         "mean_speed": mean,
         "piston_speed": np.abs(mean)[:, None] * strokes / math.pi,
-        "fluctuation": (fast - slowest) / np.abs(mean),
-        "speed_gain": _gained(solved, machine.sense, cases.mass),
+        "speed_gain": _gained(motions),
         "crank_torque": (share * rods).sum(axis=(1, 2)) / turned,
         "external_torque": (share * load).sum(axis=(1, 2)) / turned,
+        "kinetic_power": (courses.ends[:, -1] - courses.begin) / time,
     }
-    numbers |= _torques_between(cases, machine.sense, (slowest, fast))
-    numbers["kinetic_power"] = (courses.ends[:, -1] - courses.begin) / time
     numbers["brake_power"] = -numbers["external_torque"] * mean
-    return numbers | _powers(machine, tables, numbers["duration"]), peaks
+    numbers |= _powers(machine, tables.works, numbers["duration"])
+    return numbers | _loads(machine.scene, "mean", means)
 
 
-def _torques_between(cases: Cases, sense: float, ends: tuple[Array, Array]) -> Numbers:
+def _of_peaks(motions: Motions, largest: Sequence[Array], best: Index, mean: Array) -> Numbers:
+    """What depends on the largest sizes of the vectors, of which some joints stand for others, and
+    of the lectures; mean : speed [rad/s]."""
+    vectors, lectures = largest
+    sense, (torque, speed) = motions.machine.sense, motions.levels
+    forward, backward = vectors[:, -2] - speed, speed - vectors[:, -1]
+    fast, slow = (forward, backward) if sense > 0.0 else (-backward, -forward)
+    peaks = np.take_along_axis(vectors, best, axis=1)
+    return {
+        "fast": fast,
+        "slow": slow,
+        "highest_speed": forward,
+        "lowest_speed": backward,
+        "fluctuation": (fast - slow) / np.abs(mean),
+        "torque_max": vectors[:, -4] - torque,
+        "torque_min": torque - vectors[:, -3],
+        "lectures": lectures,
+        **_torques_between(motions.cases, backward, forward),
+        **_loads(motions.machine.scene, "peak", peaks),
+    }
+
+
+def _torques_between(cases: Cases, low: Array, high: Array) -> Numbers:
     """The largest and the least torque [N m] of loads c0 + c1 omega + c2 omega^2 between two
-    speeds [rad/s], without sense, each of shape (k,)."""
-    c0, c1, c2 = cases.c0, sense * cases.c1, cases.c2
-    with np.errstate(divide="ignore", invalid="ignore"):
-        vertex = np.nan_to_num(-0.5 * c1 / c2)
-    speeds = np.stack([*ends, np.clip(vertex, *ends)])
-    torques = c0 + (c1 + c2 * speeds) * speeds
+    speeds [rad/s], each of shape (k,)."""
+    vertex = np.nan_to_num(-0.5 * cases.c1 / cases.c2)
+    speeds = np.stack([low, high, np.clip(vertex, low, high)])
+    torques = cases.c0 + (cases.c1 + cases.c2 * speeds) * speeds
     return {"external_torque_max": torques.max(axis=0), "external_torque_min": torques.min(axis=0)}
 
 
-def _gained(solved: Solved, sense: float, mass: Array) -> Array:
+def _gained(motions: Motions) -> Array:
     """The speed gained over the period [rad/s]."""
-    (tables, courses, cuts), inertia = solved, solved.tables.at_begin + mass
-    if cuts is not None:
-        rows, place = at_cell(tables.inertia, cuts.cell).T, cuts.place
+    tables, courses, mass = motions.tables, motions.courses, motions.cases.mass
+    inertia = tables.at_begin + mass
+    if courses.cuts is not None:
+        rows, place = courses.cuts.of(tables.inertia).T, courses.cuts.place
         inertia = at_nodes(len(rows)).part(rows, place, place)[0] + mass
     begin, end = (np.sqrt(2.0 * each / inertia) for each in (courses.begin, courses.ends[:, -1]))
-    return np.asarray(sense * (end - begin))
+    return np.asarray(motions.machine.sense * (end - begin))
 
 
-def _powers(machine: Machine, tables: Pass, time: Array) -> Numbers:
+def _powers(machine: Machine, works: Sequence[Works], time: Array) -> Numbers:
     """Of gas and friction on the pistons, over periods of these durations [s]."""
-    shares, every = machine.shares, []
+    every = []
     for scene, of_scene, period in zip(
-        machine.scenes, tables.works, np.split(time, len(tables.works)), strict=True
+        machine.scenes, works, np.split(time, len(works)), strict=True
     ):
-        gas, rubbed, *ends = (
-            Number(shares * by_turns(works, shares), 0.0 * works) for works in of_scene
-        )
-        works = Works(gas, rubbed, (ends[0], ends[1]) if ends else None)
         numbers = {
             name: np.tile(number.value, (len(period), 1))
             if name.startswith("imep")
             else number.value + 0.0 * period
-            for name, number in powers(scene, works, 1.0, period).items()
+            for name, number in powers(scene, of_scene, 1.0, period).items()
         }
         if scene.friction is not None:
             numbers.setdefault("mechanical_efficiency", np.full_like(period, np.nan))
@@ -211,124 +172,43 @@ def _powers(machine: Machine, tables: Pass, time: Array) -> Numbers:
     return {name: np.concatenate([numbers[name] for numbers in every]) for name in every[0]}
 
 
-def by_turns(values: Array, shares: int) -> Array:
-    """The mean over the whole period of what cylinders have in a share of it, shape (...,
-    cylinders): what one has there another has in the next one."""
-    return values if shares == 1 else values.mean(axis=-1, keepdims=True) + 0.0 * values
+def _by_kind(scene: Scene, word: str, values: Array) -> Numbers:
+    """What joints have, shape (k, joints), by the names of their kinds and of what it is."""
+    return {
+        f"{kind.key}_{word}": values[:, kind.rows if kind.of else kind.rows.start]
+        for kind in kinds_of(scene)
+    }
 
 
-def _motions(solved: Solved, sense: float, cases: Cases) -> _Motions:
-    (tables, courses, cuts), (mass, c0, c1, c2) = solved, (x[:, None, None] for x in cases[:4])
-    energy, rows = courses.energy, [tables.inertia, tables.slope, tables.torque]
-    if cuts is not None:
-        rows = [
-            np.append(row + 0.0 * mass, at_cell(row, cuts.cell)[:, None], axis=1) for row in rows
-        ]
-    inertia, slope, torque = rows
-    total = inertia + mass
-    square = 2.0 * energy / total
-    speed = np.sqrt(square)
-    omega = sense * speed
-    load = c0 + c1 * omega + c2 * square
-    alpha = (torque + load - 0.5 * slope * square) / total
-    return _Motions(square, alpha, omega, 1.0 / speed, load)
+def _loads(scene: Scene, word: str, values: Array) -> Numbers:
+    """The same of forces, and over the areas of the shells."""
+    loads = _by_kind(scene, word, values)
+    for kind in kinds_of(scene):
+        area = shell_area(scene, kind.joint)
+        if area is not None:
+            loads[f"{kind.key}_specific_{word}"] = loads[f"{kind.key}_{word}"] / area
+    return loads
 
 
-def _combined(table: Array, of: _Motions, cuts: Cuts | None) -> Array:
-    """What a table, shape (machines, ..., 3, m, s), makes of omega^2, alpha and 1, shape (k, ...,
-    m, s)."""
-    lead, (k, _, s), m = table.shape[1:-3], of.square.shape, table.shape[-2]
-    square, alpha = (each.reshape(k, *np.ones_like(lead), -1, s) for each in of[:2])
-    values = np.empty((k, *lead, square.shape[-2], s))
-
-    def fill(at: slice, parts: Array) -> None:
-        some = values[..., at, :]
-        np.multiply(parts[0], square[..., at, :], out=some)
-        some += parts[1] * alpha[..., at, :]
-        some += parts[2]
-
-    fill(slice(m), np.moveaxis(table, -3, 0))
-    if cuts is not None:
-        fill(slice(m, None), np.moveaxis(at_cell(table, cuts.cell), -2, 0)[..., None, :])
-    return values
+def _best(machine: Machine, peaks: Array) -> Index:
+    """The joint whose peak each one has in the end, shape (k, joints): its own, or where cylinders
+    differ in shares of the period alone the largest of its kind."""
+    kinds = kinds_of(machine.scene)
+    best = np.tile(np.arange(kinds[-1].rows.stop), (len(peaks), 1))
+    for kind in kinds if machine.shares > 1 else ():
+        best[:, kind.rows] = kind.rows.start + peaks[:, kind.rows].argmax(axis=1)[:, None]
+    return best
 
 
-def _extremes(*quantities: tuple[Array, Array | float, Array]) -> Array:
-    """Vectors along a line whose sizes are largest where quantities are largest, then least, shape
-    (k, 2 for each, 2, m, s).
-
-    quantities : values, shape (k, m, s), what is added to them, and what they are taken from, shape
-        (k,), so that neither is negative
-    """
-    rows = []
-    for values, added, level in quantities:
-        rows += [values + np.reshape(added, (-1, 1, 1)), level[:, None, None] - values]
-    sizes = np.stack(rows, axis=1)[:, :, None]
-    return np.concatenate([sizes, np.zeros_like(sizes)], axis=2)
-
-
-def _cut(values: Array, cuts: Cuts) -> Array:
-    """Values at the nodes of whole cells, shape (k, ..., m + 1, s), in those of which parts count
-    at the nodes of these."""
-    each, (cell, place), last = np.arange(len(values)), cuts, values.shape[-2] - 1
-    polynomials = at_nodes(values.shape[-1])
-    for at, low, high in ((cell, 0.0, place), (last, place, 1.0)):
-        values[each, ..., at, :] = polynomials.part(values[each, ..., at, :].T, low, high).T
-    return values
-
-
-def _curves(tables: Pass, vectors: Array, sizes: Array, cuts: Cuts | None) -> Curves:
-    """Of vectors at all nodes, shape (k, r, components, m, s), and their sizes."""
-    k, r, m, s = sizes.shape
-    nodes = np.arange(m * s) if cuts else sparse_nodes(tables.width.max(axis=0), s)
-
-    def some_sizes(some: slice) -> Array:
-        seen = sizes[some].reshape(-1, r, m * s)[..., nodes]
-        return np.ascontiguousarray(np.moveaxis(seen, 2, 0))
-
-    def rows(which: Which) -> Array:
-        return vectors[which.case, which.curve, :, which.cell].T.copy()
-
-    return Curves((k, r), 1, some_sizes, nodes // s, rows)
-
-
-def _of_lectures(tables: Pass, of: _Motions, mean: Array, cuts: Cuts | None) -> Curves:
-    """Of the lectures over the whole period: A (u - p) + B alpha + C + D p; mean : speed, shape
-    (k,)."""
-    (k, m, s), lectures, mean = of.omega.shape, tables.lectures, mean[:, None, None]
-    powers = np.empty((k, m, 2, 4, s))  # of what goes with the square of the speed, or with it
-    for line, (u, p) in enumerate(((of.square, mean**2), (of.omega, mean))):
-        each = np.broadcast_arrays(u - p, of.alpha, np.ones(1), p)
-        powers[:, :, line] = np.stack(each, axis=2)
-    cells, nodes = np.divmod(lectures.sparse, s)
-
-    def sizes(some: slice) -> Array:
-        seen, table = powers[some, cells % m, :, :, nodes], lectures.at_sparse
-        if table.shape[1] > 1:
-            table = table[:, lectures.of_case[some]]
-        shape = len(cells), table.shape[1], -1
-        square, linear = (seen[:, :, line].reshape(*shape, 4) for line in range(2))
-        values = square @ table
-        values[..., LINEAR] = linear @ table[..., LINEAR]
-        values = values.reshape(len(cells), -1, CURVES)
-        if cuts is not None:  # of other nodes
-            values[cells[:, None] == cuts.cell[some]] = 0.0
-        return np.asarray(np.abs(values, out=values))
-
-    def rows(which: Which) -> Array:
-        case, curve, cell = which
-        line = ((curve >= LINEAR.start) & (curve < LINEAR.stop)).astype(np.intp)
-        whole = cell if cuts is None else np.where(cell == m - 1, cuts.cell[case], cell)
-        table, power = lectures.at(case, whole, curve), powers[case, cell % m, line]
-        values = np.einsum("pcs,cps->cs", table, power).T[:, None].copy()
-        if cuts is not None:
-            low = np.where(cell == m - 1, cuts.place[case], 0.0)
-            high = np.where(cell == cuts.cell[case], cuts.place[case], 1.0)
-            part = high - low < 1.0
-            values[..., part] = at_nodes(s).part(values[..., part], low[part], high[part])
-        return np.asarray(values)
-
-    always = None
-    if cuts is not None:
-        always = np.stack([cuts.cell, np.full_like(cuts.cell, m - 1)], axis=1)
-    return Curves((k, CURVES), EACH, sizes, cells, rows, always)
+def _angles(motions: Motions, peaks: Peaks, best: Index) -> Numbers:
+    """Where the peaks of joints are: crank angle, or cycle angle of their cylinder [rad]."""
+    machine, (begin, width), of = motions.machine, motions.places, peaks
+    scene, case = machine.scene, np.minimum(np.arange(len(best)), len(width) - 1)[:, None]
+    turned = begin[case, of.cell] + of.place * width[case, of.cell]
+    phases = [
+        0.0 if joint.cylinder is None else scene.cylinders[joint.cylinder - 1].phase
+        for joint in joints_of(scene)
+    ]
+    places = machine.begin + machine.sense * turned[:, : len(phases)] + phases
+    places = np.mod(np.take_along_axis(places, best, axis=1), scene.period)
+    return _by_kind(scene, "peak_angle", places)

@@ -8,15 +8,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.batch.measures import by_turns
 from crankmbs.batch.solve import Group, solved_together
 from crankmbs.compare import LECTURES, QUANTITIES
-from crankmbs.measures.estimate import ROUNDING
-from crankmbs.measures.joints import joints_of, shell_area
 from crankmbs.measures.names import names_of
 from crankmbs.mechanics.peaks import negligible
-from crankmbs.mechanics.pressure import PeriodicPressure, pressures_of
-from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.ending import Ending
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
@@ -48,15 +43,13 @@ def rows_of(scenes: Sequence[Scene | None]) -> list[Rows]:
 
 
 def _rows(group: Group) -> Rows:
-    of, error = group.numbers, group.errors
+    of, error, scene = group.numbers, group.errors, group.machine.scene
     columns = {"relative_error": of["relative"], "energy_closure": of["closure"]}
-    pairs = {name: (of[name], error[name]) for name in names_of(group.machine.scene) if name in of}
-    pairs |= _of_pressures(group)
-    columns |= _of_joints(group, pairs)
-    columns |= {name: value for name, (value, _) in pairs.items()}
-    columns |= {f"{name}_error": error for name, (_, error) in pairs.items()}
-    columns |= _of_lectures(group)
-    return Rows(group.which, columns, _messages(group))
+    for name in names_of(scene):
+        if name in of:
+            columns |= {name: of[name], f"{name}_error": error[name]}
+    columns |= {name: of[name] for name in of if name.endswith("_peak_angle")}
+    return Rows(group.which, columns | _of_lectures(group), _messages(group))
 
 
 def _messages(group: Group) -> tuple[str, ...]:
@@ -67,59 +60,6 @@ def _messages(group: Group) -> tuple[str, ...]:
     return tuple(
         f"settled: a disturbance decays to {100.0 * factor:.4g} % per period" for factor in factors
     )
-
-
-def _of_joints(group: Group, pairs: dict[str, tuple[Array, Array]]) -> dict[str, Array]:
-    """The angles of the peaks; peaks, means and specific loads go into ``pairs``."""
-    machine, of, error = group.machine, group.numbers, group.errors
-    scene, shares, joints = machine.scene, machine.shares, joints_of(machine.scene)
-    turned, angles = machine.begin + machine.sense * of["angles"], {}
-    phases = np.array([cylinder.phase for cylinder in scene.cylinders])
-    for name, each in {joint.joint: joint.of for joint in joints}.items():
-        every = [k for k, joint in enumerate(joints) if joint.joint == name]
-        places = turned[:, every] + (phases if each == "cylinder" else 0.0)
-        peaks, best = of["peaks"][:, every], np.tile(np.arange(len(every)), (len(turned), 1))
-        if shares > 1:
-            best[:] = np.argmax(peaks, axis=1)[:, None]
-        values = peaks, error["peaks"][:, every], np.mod(places, scene.period)
-        peak, apart, place = (np.take_along_axis(one, best, axis=1) for one in values)
-        means = (by_turns(one["means"][:, every], shares) for one in (of, error))
-        key, area = name.replace(" ", "_"), shell_area(scene, name)
-        alone = ... if each else (..., 0)
-        angles[f"{key}_peak_angle"] = place[alone]
-        for what, pair in (("peak", (peak, apart)), ("mean", means)):
-            value, unsure = (one[alone] for one in pair)
-            pairs[f"{key}_{what}"] = value, unsure
-            if area is not None:
-                pairs[f"{key}_specific_{what}"] = value / area, unsure / area
-    return angles
-
-
-def _of_pressures(group: Group) -> dict[str, tuple[Array, Array]]:
-    """The largest pressures of every cylinder, which are alike in all motions of a machine."""
-    every = [_highest(scene) for scene in group.machine.scenes]
-    pairs, cases = {}, np.zeros((len(group.which), 1))
-    for name in every[0]:
-        peaks = np.array([highest[name] for highest in every])
-        pairs[name] = peaks[..., 0] + cases, peaks[..., 1] + cases
-    return pairs
-
-
-def _highest(scene: Scene) -> dict[str, list[tuple[float, float]]]:
-    """The peak of each pressure and its error."""
-    train = crank_train(scene)
-    ends = {"gauge_pressure": train.pressure} if train.pressure else {}
-    if train.crank_end is not None:
-        ends = {"gauge_pressure_head_end": pressures_of(scene) or ()}
-        ends["gauge_pressure_crank_end"] = train.crank_end
-    once = {each: _peak_of(each) for each in dict.fromkeys(sum(ends.values(), ()))}
-    return {name: [once[each] for each in pressures] for name, pressures in ends.items()}
-
-
-def _peak_of(pressure: PeriodicPressure) -> tuple[float, float]:
-    """The highest pressure and its error."""
-    (_, value), (_, perturbed) = pressure.peak, pressure.perturbed.peak
-    return value, abs(perturbed - value) + ROUNDING * abs(value)
 
 
 def _of_lectures(group: Group) -> dict[str, Array]:

@@ -14,8 +14,7 @@ import numpy as np
 
 from crankmbs.batch.machine import Machine, family_of, forces_of, key_of, machine_of
 from crankmbs.batch.measures import Numbers, measure
-from crankmbs.batch.motion import Cases, part_of
-from crankmbs.batch.passes import cases_of, pairs_of
+from crankmbs.batch.passes import cases_of, passes_of
 from crankmbs.batch.serves import loads_of
 from crankmbs.design.rebalance import mean_speed_of
 from crankmbs.errors import CrankmbsError
@@ -31,8 +30,7 @@ _MANY = 1_000_000  # forces at nodes at once: 8 MB, and several times as much be
 
 class Group(NamedTuple):
     """Scenes that are solved together, of one machine or each of its own: their numbers, shape
-    (n,), and what
-    `crankmbs.batch.measures.measure` has of them."""
+    (n,), and what `crankmbs.batch.measures.measure` has of them."""
 
     machine: Machine
     which: Index
@@ -59,7 +57,8 @@ def solved_together(scenes: Sequence[Scene | None]) -> Iterator[Group]:
                 families[family if len(numbers) <= _FEW else key] += numbers
     for numbers in families.values():
         one = len({key_of(served[number]) for number in numbers}) == 1
-        many = len(numbers) if one else max(1, _MANY // forces_of(served[numbers[0]]))
+        most = _MANY if one else _MANY // 2  # tables take as much
+        many = max(1, most // forces_of(served[numbers[0]]))
         for first in range(0, len(numbers), many):
             which = numbers[first : first + many]
             with suppress(CrankmbsError):
@@ -94,38 +93,22 @@ def _machine(alike: _Alike, finest: bool) -> Machine:
 
 def _of_machine(scenes: Sequence[Scene], which: Index, one: bool) -> Iterator[Group]:
     """The scenes of one machine, or of as many machines, by the coarsest rules that do; those that
-    err too much by the finest are left."""
-    left, cases = np.arange(len(which)), cases_of(scenes)
+    err too much by the finest, or have no motion, are left."""
+    left = np.arange(len(which))
     for finest in (False, True):
+        some = [scenes[k] for k in left.tolist()]
         if one:
             machine = _machine(_Alike(key_of(scenes[0]), scenes[0]), finest)
         else:
-            machine = machine_of(*(scenes[k] for k in left.tolist()), finest=finest)
-        parts = list(_parts(machine, left, cases))
-        if not parts:
-            return
-        left = np.concatenate([part.which for part in parts])
-        numbers = _joined([part.numbers for part in parts])
-        errors = _joined([part.errors for part in parts])
-        good = numbers["relative"] <= cases.rtol[left]
+            machine = machine_of(*some, finest=finest)
+        cases = cases_of(some)
+        with np.errstate(all="ignore"):  # where there is no motion there are no numbers
+            *passes, sure = passes_of(machine, cases)
+            numbers, errors = measure(machine, cases, passes)
+        good = sure & (numbers["relative"] <= cases.rtol)
         if good.any():
             chosen = ({name: of[name][good] for name in of} for of in (numbers, errors))
-            yield Group(parts[0].machine.part(good), which[left[good]], *chosen)
-        left = left[~good]
+            yield Group(machine, which[left[good]], *chosen)
+        left = left[sure & ~good]
         if machine.finest or len(left) == 0:
             return
-
-
-def _joined(parts: list[Numbers]) -> Numbers:
-    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-
-
-def _parts(machine: Machine, which: Index, cases: Cases) -> Iterator[Group]:
-    """Those of some cases that have a motion, some after the others."""
-    many = max(1, _MANY // machine.answer.forces[0, :, :, 0].size)
-    many = many if len(machine.scenes) == 1 else len(which)
-    for first in range(0, len(which), many):
-        some = which[first : first + many]
-        pairs = pairs_of(machine, some, part_of(cases, some))
-        if len(pairs.which):
-            yield Group(pairs.machine, pairs.which, *measure(pairs))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -12,7 +13,7 @@ from crankmbs.measures.estimate import Estimate
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Joint", "JointForce", "joints_of", "shell_area"]
+__all__ = ["Joint", "JointForce", "joints_of", "kinds_of", "shell_area"]
 
 
 @dataclass(frozen=True)
@@ -59,10 +60,11 @@ class Joint(NamedTuple):
     number: int | None = None
 
     def force(self, variables: Mapping[str, Array]) -> Array:
-        """Its components at points, shape (2, p) [N]; of the side force the second is zero."""
+        """Its components at points, shape (2, ..., p) [N]; of the side force the second is
+        zero."""
         columns = [variables[name] for name in self.variables]
         if self.number is not None:
-            columns = [column[:, self.number - 1] for column in columns]
+            columns = [column[..., self.number - 1] for column in columns]
         return np.array([*columns, np.zeros_like(columns[0])][:2])
 
     @property
@@ -88,6 +90,32 @@ def joints_of(scene: Scene) -> tuple[Joint, ...]:
         if throws.shared:
             joints += _alike("shared pin", _components("pin_force"), "pin", count - 1)
     return tuple(joints)
+
+
+class Kind(NamedTuple):
+    """Joints of one name: what each is one of, and their places among all."""
+
+    joint: str
+    of: str
+    rows: slice
+
+    @property
+    def key(self) -> str:
+        """How its measures are named."""
+        return self.joint.replace(" ", "_")
+
+
+def kinds_of(scene: Scene) -> list[Kind]:
+    """The kinds of joints of a scene, in the order of `joints_of`.
+
+    >>> [kind.rows.stop for kind in kinds_of(load_scene("v_twin"))]
+    [1, 3, 5, 7]
+    """
+    kinds, begin = [], 0
+    for (joint, of), count in Counter((each.joint, each.of) for each in joints_of(scene)).items():
+        kinds.append(Kind(joint, of, slice(begin, begin + count)))
+        begin += count
+    return kinds
 
 
 def _components(name: str) -> tuple[str, str]:

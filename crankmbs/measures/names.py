@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from crankmbs.measures.estimate import Estimate
-from crankmbs.measures.joints import joints_of, shell_area
+from crankmbs.measures.joints import kinds_of, shell_area
 from crankmbs.measures.peaks import SPEEDS, quantities_of, torque_of_rods
 from crankmbs.measures.summary import Measures
 from crankmbs.scene.scene import Scene
@@ -56,16 +56,17 @@ def names_of(scene: Scene) -> dict[str, Named]:
         "indicated_work": Named("J", f"indicated work per cycle{every}") if gas else None,
     }
     names = {name: about for name, about in single.items() if about is not None}
-    joints = joints_of(scene)
-    for joint, of in {each.joint: each.of for each in joints}.items():
-        key = joint.replace(" ", "_")
-        force = signless(f"{joint.removesuffix(' force')} force")
+    kinds = kinds_of(scene)
+    for kind in kinds:
+        key, of = kind.key, kind.of
+        force = signless(f"{kind.joint.removesuffix(' force')} force")
         names[f"{key}_peak"] = Named("N", f"largest {force}", of)
         names[f"{key}_mean"] = Named("N", f"mean {force}", of)
-        if shell_area(scene, joint) is not None:
-            names[f"{key}_specific_peak"] = Named("N/m^2", f"largest specific load, {joint}", of)
-            names[f"{key}_specific_mean"] = Named("N/m^2", f"mean specific load, {joint}", of)
-    for quantity in (*quantities_of(scene)[len(joints) :], *SPEEDS):
+        if shell_area(scene, kind.joint) is not None:
+            load = f"specific load, {kind.joint}"
+            names[f"{key}_specific_peak"] = Named("N/m^2", f"largest {load}", of)
+            names[f"{key}_specific_mean"] = Named("N/m^2", f"mean {load}", of)
+    for quantity in (*quantities_of(scene)[kinds[-1].rows.stop :], *SPEEDS):
         of = "cylinder" if quantity.number else ""
         names[_key(quantity.name)] = Named(quantity.units, signless(quantity.name), of)
     return names

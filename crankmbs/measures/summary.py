@@ -12,7 +12,7 @@ import numpy as np
 
 from crankmbs.measures.estimate import ROUNDING, Estimate, Number, Numbers, estimates
 from crankmbs.measures.joints import JointForce, joints_of, shell_area
-from crankmbs.measures.nodes import Nodes, nodes_of
+from crankmbs.measures.nodes import nodes_of
 from crankmbs.measures.peaks import SPEEDS, Peak, peak_numbers, peaks_from, quantities_of
 from crankmbs.measures.span import CYCLES, Span, measured_span, passes_over
 from crankmbs.mechanics.axes import areas
@@ -35,6 +35,7 @@ __all__ = [
     "mean_speed",
     "measure",
     "powers",
+    "works_of",
 ]
 
 _DRIFT, _OF_SWING = 0.01, 0.25  # what may change from a cycle to the next and be called periodic
@@ -273,45 +274,47 @@ def _numbers(scene: Scene, window: Span, motion: Motion) -> Numbers:
     if duration:
         energy = variables["kinetic_energy"].max(keepdims=True)
         numbers["kinetic_power"] = _energy_gain(scene, motion, energy).over(duration)
-        numbers |= _powers(scene, window, nodes, duration, late)
+        works = works_of(scene, variables, nodes.integral, late)
+        cycles = abs(window.angle) / scene.period if window.kind in CYCLES else 0.0
+        numbers |= powers(scene, works, cycles, duration)
     return numbers
 
 
-def _powers(scene: Scene, window: Span, nodes: Nodes, duration: float, late: float) -> Numbers:
-    """Of gas, friction and forces from outside on the pistons; late : units of rounding of the
-    duration."""
-    variables, velocity = nodes.variables, nodes.variables["piston_velocity"]
+class Works(NamedTuple):
+    """Works on the pistons, shape (cylinders,) [J]: of the gas, of friction, of forces from
+    outside, and of the gas of double-acting cylinders in the head end and in the crank end."""
+
+    gas: Number
+    rubbed: Number
+    applied: Number
+    ends: tuple[Number, Number] | None = None
+
+
+def works_of(
+    scene: Scene,
+    variables: Mapping[str, Array],
+    integral: Callable[[Array], Array],
+    late: float = 1.0,
+) -> Works:
+    """The works by the variables at points of shape (p,) and what integrates over the motion there;
+    late : units of rounding of what it integrates over."""
+    velocity = variables["piston_velocity"]
 
     def work(name: str, factor: Array | float = 1.0) -> Number:
         power = factor * variables[name] * velocity if name in variables else 0.0 * velocity
-        return Number(nodes.integral(power), late * nodes.integral(np.abs(power)))
+        return Number(integral(power), late * integral(np.abs(power)))
 
     ends = None
     if scene.double_acting:
         head, crank = areas(scene)
         ends = work("gas_pressure", head), work("crank_end_pressure", -crank)
-    works = Works(work("gas_force"), work("friction_force"), ends)
-    whole = window.kind in CYCLES
-    cycles = abs(window.angle) / scene.period if whole else 0.0
-    numbers = powers(scene, works, cycles, duration)
-    if scene.force:
-        numbers["force_power"] = work("applied_force").summed.over(duration)
-    return numbers
-
-
-class Works(NamedTuple):
-    """Works on the pistons, shape (cylinders,) [J]: of the gas, of friction, and of the gas of
-    double-acting cylinders in the head end and in the crank end."""
-
-    gas: Number
-    rubbed: Number
-    ends: tuple[Number, Number] | None = None
+    return Works(work("gas_force"), work("friction_force"), work("applied_force"), ends)
 
 
 def powers(scene: Scene, works: Works, cycles: float, duration: float | Array) -> Numbers:
     """Powers, mean effective pressures and efficiency by the works on the pistons over so many
     cycles, 0 where they are not whole ones, in a duration [s]."""
-    numbers, (of_gas, rubbed, ends) = {}, works
+    numbers, (of_gas, rubbed, applied, ends) = {}, works
     if scene.gas is not None:
         numbers["indicated_power"] = of_gas.summed.over(duration)
         head, crank = ends or (of_gas, None)
@@ -334,6 +337,8 @@ def powers(scene: Scene, works: Works, cycles: float, duration: float | Array) -
         if share is not None:
             value = np.array([share.value])
             numbers["mechanical_efficiency"] = Number(value, np.ones(1) + np.abs(value))
+    if scene.force:
+        numbers["force_power"] = applied.summed.over(duration)
     return numbers
 
 
