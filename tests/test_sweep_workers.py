@@ -360,5 +360,6 @@ def test_an_unreachable_scheduler_is_one_sentence(tmp_path):
 
 def test_few_blocks_are_computed_where_they_are_asked_for(monkeypatch):
     monkeypatch.setattr(workers, "_processes", None)
-    job = plan_of(SCENE, GRID, "measures").job
-    assert [number for number, _ in workers.computed(job, [2, 0], None)] == [2, 0]
+    plan = plan_of(SCENE, GRID, "measures")
+    few = [plan.boxes[2], plan.boxes[0]]
+    assert [box for box, _ in workers.computed(plan.job, few, None)] == few

@@ -241,7 +241,7 @@ def _also_stored(plan: Plan, out: Path) -> str:
     """What the store has of each of several, and how to see it."""
     from crankmbs.sweep.columns import columns_of
 
-    dims = {dim for column in columns_of(plan.scene, series=False).values() for dim in column.dims}
+    dims = {dim for column in columns_of(plan.scene).values() for dim in column.dims}
     *most, last = (name for dim, name in _EACH.items() if dim in dims)
     each = f"{', '.join(most)} and {last}" if most else last
     return (
@@ -257,8 +257,8 @@ def _warnings(plan: Plan) -> list[str]:
 
     known = {text.partition(":")[0] for text in warnings(plan.scene)}
     lines: dict[str, None] = {}
-    for number in (0, plan.cases.count - 1):
-        (values,) = plan.cases.values(range(number, number + 1))
+    for end in (slice(1), slice(-1, None)):
+        (values,) = plan.cases.values([end] * len(plan.cases.shape))
         with suppress(CrankmbsError):  # what cannot be built is counted
             texts = warnings(scene_of(plan.scene, plan.cases.names, values))
             lines |= dict.fromkeys(t for t in texts if t.partition(":")[0] not in known)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.optimize import Bounds, NonlinearConstraint
+from scipy.optimize import NonlinearConstraint
 from scipy.optimize import minimize as polished
 
 from crankmbs.errors import InputError
@@ -98,58 +98,72 @@ def minimize(
     knobs = tuple(interval_of(scene, *item) for item in drawn.vary.items())
     if not knobs or any(knob.whole for knob in knobs):
         raise InputError("vary: needs ranges of numbers that are not whole; sweep compares others")
-    reading = reading_of(measure, columns_of(scene, series=False))
+    reading = reading_of(measure, columns_of(scene))
     conditions = [asked_of(scene, text, "<= >= < >") for text in subject_to]
-    for each in (reading, *(condition[0] for condition in conditions)):
+    readings = (reading, *(condition[0] for condition in conditions))
+    for each in readings:
         check_free(scene, each, [knob.name for knob in knobs])
-    return _Descent(scene, knobs, reading, conditions).minimum()
+    asked = Asked(scene, tuple(knob.name for knob in knobs), readings)
+    descent = _Descent(asked, knobs, [(sign, bound) for _, sign, bound in conditions])
+    best, status, message = descent.ended()
+    reached, *others = descent.estimates(best)
+    values = zip(knobs, descent.values(best), strict=True)
+    return Minimum(
+        values={knob.name: value for knob, value in values},
+        units={knob.name: knob.units for knob in knobs},
+        measure=reading,
+        reached=reached,
+        conditions=tuple(
+            Condition(*wanted, estimate)
+            for wanted, estimate in zip(conditions, others, strict=True)
+        ),
+        evaluations=len(descent.tried),
+        status=status,
+        message=message,
+    )
 
 
 class _Descent:
-    """A measure and its conditions over shares of the ranges; each point is computed once."""
+    """A measure and its conditions, each a sign and a bound, over shares of the ranges.
+
+    tried : values of the knobs -> the point
+    """
 
     def __init__(
-        self,
-        scene: Scene,
-        knobs: tuple[Interval, ...],
-        reading: Reading,
-        conditions: list[tuple[Reading, str, float]],
+        self, asked: Asked, knobs: tuple[Interval, ...], bounds: list[tuple[str, float]]
     ) -> None:
-        self._asked, self._knobs = Asked(scene, tuple(knob.name for knob in knobs)), knobs
-        self._reading, self._conditions = reading, conditions
-        self._known: dict[tuple[float, ...], tuple[Estimate, ...]] = {}
+        self._asked, self._knobs, self._bounds = asked, knobs, bounds
+        self.tried: dict[tuple[float, ...], Array] = {}
 
-    def minimum(self) -> Minimum:
+    def ended(self) -> tuple[Array, int, str]:
+        """The best point, status and message."""
         count = len(self._knobs)
         drawn = 2 ** math.ceil(math.log2(_POINTS * count))
-        points = Sample(dict.fromkeys(self._asked.names, ""), drawn).points(range(drawn))
-        values = np.array([self._least(point) for point in points])
-        excess = np.array([self._excess(point).max(initial=0.0) for point in points])
-        runs = np.isfinite(values)
-        if not runs.any():
-            return self._answer(points[0], 1, "no case in the ranges has the measure")
-        excess[~runs] = math.inf
-        start = points[np.lexsort((values, excess))[0]]
-        scale = float(np.nanmax(np.abs(values))) or 1.0
-        constraint = NonlinearConstraint(self._excess, -np.inf, 0.0)
+        points = Sample({knob.name: "" for knob in self._knobs}, drawn).points()
+        ranks = [self._rank(point) for point in points]
+        best = points[ranks.index(min(ranks))]
+        if min(ranks)[1] == math.inf:
+            return best, 1, "no case in the ranges has the measure"
+        scale = max(abs(least) for _, least in ranks if least < math.inf) or 1.0
         options: Any = {"maxfev": _MOST * count}
         options |= {"initial_tr_radius": _FIRST, "final_tr_radius": _LAST}
-        ended = polished(  # type: ignore[call-overload]
-            lambda share: self._least(share) / scale,
-            start,
+        constraint = NonlinearConstraint(self._excess, -np.inf, 0.0)
+        polished(  # type: ignore[call-overload]
+            lambda share: self.estimates(share)[0].value / scale,
+            best,
             method="COBYQA",
-            bounds=Bounds(np.zeros(count), np.ones(count)),
-            constraints=[constraint] if self._conditions else [],
+            bounds=[(0.0, 1.0)] * count,
+            constraints=[constraint] if self._bounds else [],
             options=options,
         )
-        best = self._best(np.clip(ended.x, 0.0, 1.0))
-        if self._excess(best).max(initial=0.0) > _SLACK:
-            return self._answer(best, 1, "nothing in the ranges fulfils the conditions")
+        best = self._best()
+        if self._rank(best)[0] > 0.0:
+            return best, 1, "nothing in the ranges fulfils the conditions"
         for _ in range(_AGAIN):
             before, best = best, self._down_kinks(best)
-            if self._least(before) - self._least(best) <= _CLEARLY * scale:
+            if self._rank(before)[1] - self._rank(best)[1] <= _CLEARLY * scale:
                 break
-        return self._answer(best, 0, f"found{self._at_bounds(best)}")
+        return best, 0, f"found{self._at_bounds(best)}"
 
     def _down_kinks(self, start: Array) -> Array:
         """The best point known after Nelder and Mead's simplex went on from one, within the
@@ -158,13 +172,14 @@ class _Descent:
         inward = np.where(start < 0.5, _FIRST, -_FIRST)
 
         def walled(share: Array) -> float:
-            return math.inf if self._excess(share).max(initial=0.0) > _SLACK else self._least(share)
+            excess, least = self._rank(share)
+            return math.inf if excess > 0.0 else least
 
         polished(
             walled,
             start,
             method="Nelder-Mead",
-            bounds=Bounds(np.zeros_like(start), np.ones_like(start)),
+            bounds=[(0.0, 1.0)] * len(start),
             options={
                 "initial_simplex": np.vstack([start, start + np.diag(inward)]),
                 "maxfev": _MOST * len(start),
@@ -172,65 +187,43 @@ class _Descent:
                 "fatol": math.inf,
             },
         )
-        return self._best(start)
+        return self._best()
 
     def _at_bounds(self, share: Array) -> str:
         """The knobs that ended at a bound of their range, in words."""
         ends = np.minimum(share, 1.0 - share) <= _AT
-        names = [name for name, ended in zip(self._asked.names, ends, strict=True) if ended]
+        names = [knob.name for knob, ended in zip(self._knobs, ends, strict=True) if ended]
         return (
             f", at a bound of {' and '.join(names)}: beyond it there may be less" if names else ""
         )
 
-    def _best(self, end: Array) -> Array:
-        """The best point known that fulfils the conditions; without one the end of the polish."""
-        self._least(end)
-        fit = [
-            np.array(share)
-            for share, (estimate, *_) in self._known.items()
-            if math.isfinite(estimate.value)
-            and self._excess(np.array(share)).max(initial=0.0) <= _SLACK
-        ]
-        return min(fit, key=self._least, default=end)
+    def _best(self) -> Array:
+        return min(self.tried.values(), key=self._rank)
 
-    def _answer(self, share: Array, status: int, message: str) -> Minimum:
-        reached, *rest = self._estimates(share)
-        values = self._values(share)
-        knobs = self._knobs
-        return Minimum(
-            values={knob.name: value for knob, value in zip(knobs, values, strict=True)},
-            units={knob.name: knob.units for knob in knobs},
-            measure=self._reading,
-            reached=reached,
-            conditions=tuple(
-                Condition(*wanted, estimate)
-                for wanted, estimate in zip(self._conditions, rest, strict=True)
-            ),
-            evaluations=len(self._known),
-            status=status,
-            message=message,
-        )
-
-    def _least(self, share: Array) -> float:
-        return self._estimates(share)[0].value
+    def _rank(self, share: Array) -> tuple[float, float]:
+        """By how much the conditions are missed, then the measure; infinite where it has none."""
+        excess = float(self._excess(share).max(initial=0.0))
+        least = self.estimates(share)[0].value
+        if math.isnan(excess + least):
+            return math.inf, math.inf
+        return excess if excess > _SLACK else 0.0, least
 
     def _excess(self, share: Array) -> Array:
         """How far each condition is from being fulfilled, over its bound; at most 0 where it is."""
         excess = []
-        for (_, sign, bound), estimate in zip(
-            self._conditions, self._estimates(share)[1:], strict=True
-        ):
+        for (sign, bound), estimate in zip(self._bounds, self.estimates(share)[1:], strict=True):
             beyond = (estimate.value - bound) / (abs(bound) or 1.0)
             excess.append(beyond if sign.startswith("<") else -beyond)
         return np.array(excess)
 
-    def _estimates(self, share: Array) -> tuple[Estimate, ...]:
-        key = tuple(np.clip(share, 0.0, 1.0).tolist())
-        if key not in self._known:
-            readings = (self._reading, *(reading for reading, _, _ in self._conditions))
-            self._known[key] = self._asked.at(self._values(np.array(key)), readings)
-        return self._known[key]
+    def estimates(self, share: Array) -> tuple[Estimate, ...]:
+        """Of the measure and of what is bounded."""
+        share = np.clip(share, 0.0, 1.0)
+        values = self.values(share)
+        self.tried[values] = share
+        return self._asked.at(*values)
 
-    def _values(self, share: Array) -> tuple[float, ...]:
-        pairs = zip(self._knobs, share.tolist(), strict=True)
-        return tuple(float(knob.at(np.array(part))) for knob, part in pairs)
+    def values(self, share: Array) -> tuple[float, ...]:
+        """Of the knobs."""
+        pairs = zip(self._knobs, share, strict=True)
+        return tuple(float(knob.at(part)) for knob, part in pairs)

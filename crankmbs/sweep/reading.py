@@ -4,20 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from crankmbs.compare import LECTURES, QUANTITIES, short_name
 from crankmbs.errors import InputError, shown
-from crankmbs.measures import Estimate
 from crankmbs.scene.sentences import there_are
 from crankmbs.scene.units import quantity
-from crankmbs.sweep.columns import Column, Row
+from crankmbs.sweep.columns import Column
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from crankmbs.scene.scene import Scene
 
 __all__ = ["Reading", "amount_of", "check_free", "is_measure", "reading_of"]
@@ -54,38 +49,27 @@ class Reading(NamedTuple):
             return f"largest error of {self.quantity} by {short_name(self.lecture)}, over its peak"
         return f"{self.about.long_name}{f', {self.number}' if self.number else ''}"
 
-    def of_row(self, row: Row) -> Estimate:
-        """It in one case, with its error; NaN where the case has none."""
-        value, error = row.get(self.column), row.get(f"{self.column}_error")
-        if value is None or error is None:
-            return Estimate(np.nan, np.nan)
+    def of(self, columns: Mapping[Any, Any]) -> tuple[Any, Any]:
+        """It in every case, and its errors, from columns as a block or a dataset has them.
+
+        Raises
+        ------
+        InputError : there is none of this number
+        """
+        value, error = columns[self.column], columns[f"{self.column}_error"]
         if self.lecture:
             at = list(LECTURES).index(self.lecture), list(QUANTITIES).index(self.quantity)
-            return Estimate(float(value[at]), float(error[at]))
+            return value[(..., *at)], error[(..., *at)]
         if self.number is not None:
-            self._check(len(value))
-            value, error = value[self.number - 1], error[self.number - 1]
-        return Estimate(self.sign * float(np.max(value)), float(np.max(error)))
-
-    def of_sweep(self, data: xr.Dataset) -> tuple[xr.DataArray, float]:
-        """It in every case, and the largest of its errors."""
-        value, error = data[self.column], data[f"{self.column}_error"]
-        if self.lecture:
-            at = {"lecture": self.lecture, "quantity": self.quantity}
-            value, error = value.sel(at), error.sel(at)
-        elif many := [of for of in ("cylinder", "journal", "pin") if of in value.dims]:
-            if self.number is not None:
-                self._check(data.sizes[many[0]])
-                one = {many[0]: self.number - 1}
-                value, error = value.isel(one, drop=True), error.isel(one, drop=True)
-            else:
-                value = value.max(many)
-        return self.sign * value, float(error.max())
-
-    def _check(self, count: int) -> None:
-        assert self.number is not None
-        if not 1 <= self.number <= count:
-            raise InputError(f"{self.words}: there are {count}; give a number from 1 to {count}")
+            count = value.shape[-1]
+            if not 1 <= self.number <= count:
+                raise InputError(
+                    f"{self.words}: there are {count}; give a number from 1 to {count}"
+                )
+            value, error = value[..., self.number - 1], error[..., self.number - 1]
+        elif self.about.dims:
+            value, error = value.max(axis=-1), error.max(axis=-1)
+        return self.sign * value, error
 
 
 def reading_of(text: str, columns: Mapping[str, Column]) -> Reading:
@@ -98,7 +82,7 @@ def reading_of(text: str, columns: Mapping[str, Column]) -> Reading:
     InputError : no such measure
 
     >>> from crankmbs.sweep.columns import columns_of
-    >>> columns = columns_of(load_scene("propeller"), series=False)
+    >>> columns = columns_of(load_scene("propeller"))
     >>> reading_of("peak main bearing force", columns).column
     'main_bearing_peak'
     """
@@ -150,7 +134,7 @@ def is_measure(text: str, columns: Mapping[str, Column]) -> bool:
     """Whether `reading_of` knows it.
 
     >>> from crankmbs.sweep.columns import columns_of
-    >>> is_measure("rod ratio", columns_of(load_scene("propeller"), series=False))
+    >>> is_measure("rod ratio", columns_of(load_scene("propeller")))
     False
     """
     try:

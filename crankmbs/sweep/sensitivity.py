@@ -67,14 +67,15 @@ def sensitivity(scene: Scene, name: str, measure: str) -> Sensitivity:
     -0.993
     """
     check_scene(scene)
-    knob, value = number_at(scene, name)
-    reading = reading_of(measure, columns_of(scene, series=False))
+    knob = number_at(scene, name)
+    value = float(knob.values[0])
+    reading = reading_of(measure, columns_of(scene))
     check_free(scene, reading, [knob.name])
     step = step_from_zero(scene, knob.name) or _STEP * abs(value)
     if step == 0.0:
         raise InputError(f"{name}: is 0 in this scene, and steps are a share of it; give it a size")
-    question = Asked(scene, (knob.name,))
-    cases = [question.at((value + k * step,), (reading,))[0] for k in (-2, -1, 0, 1, 2)]
+    asked = Asked(scene, (knob.name,), (reading,))
+    cases = [asked.at(value + k * step)[0] for k in (-2, -1, 0, 1, 2)]
     far_low, low, middle, high, far_high = (case.value for case in cases)
     near, far = (high - low) / (2.0 * step), (far_high - far_low) / (4.0 * step)
     derivative = (4.0 * near - far) / 3.0

@@ -61,20 +61,28 @@ class Solved:
     message: str
 
 
-@dataclass(frozen=True)
 class Asked:
-    """One number of each case of a scene, asked for value by value."""
+    """What is read of single cases of a scene, each computed once.
 
-    scene: Scene
-    names: tuple[str, ...]
+    known : values of the knobs -> what was read
+    """
 
-    def at(self, values: tuple[float, ...], readings: tuple[Reading, ...]) -> tuple[Estimate, ...]:
+    def __init__(self, scene: Scene, names: tuple[str, ...], readings: tuple[Reading, ...]) -> None:
+        self._scene, self._names, self._readings = scene, names, readings
+        self.known: dict[tuple[float, ...], tuple[Estimate, ...]] = {}
+
+    def at(self, *values: float) -> tuple[Estimate, ...]:
         """What is read of a case; NaN where it does not reach its end."""
-        block = solved(Job(self.scene, self.names, (values,), False))
-        if block.status[0] != 0:
-            return (Estimate(math.nan, math.nan),) * len(readings)
-        row = {name: column[0] for name, column in block.rows.items()}
-        return tuple(reading.of_row(row) for reading in readings)
+        if values not in self.known:
+            block = solved(Job(self._scene, self._names, [values]))
+            if block["status"][0] != 0:
+                self.known[values] = (Estimate(math.nan, math.nan),) * len(self._readings)
+            else:
+                self.known[values] = tuple(
+                    Estimate(float(value[0]), float(error[0]))
+                    for value, error in (reading.of(block) for reading in self._readings)
+                )
+        return self.known[values]
 
 
 def asked_of(scene: Scene, text: str, signs: str) -> tuple[Reading, str, float]:
@@ -94,7 +102,7 @@ def asked_of(scene: Scene, text: str, signs: str) -> tuple[Reading, str, float]:
         raise InputError(
             f'{shown(text)} is no condition: write one such as "fluctuation {signs.split()[0]} 1 %"'
         )
-    reading = reading_of(match[1], columns_of(scene, series=False))
+    reading = reading_of(match[1], columns_of(scene))
     try:
         return reading, match[2], amount_of(match[3], reading)
     except InputError as error:
@@ -139,107 +147,91 @@ def solve(scene: Scene, vary: dict[str, str], wanted: str) -> Solved:
         raise InputError(f"{knob.name}: is a whole number, and sweep finds the best of those")
     reading, _, amount = asked_of(scene, wanted, "=")
     check_free(scene, reading, [knob.name])
-    return _Search(Asked(scene, (knob.name,)), knob, reading, amount).solved()
+    search = _Search(Asked(scene, (knob.name,), (reading,)), knob, amount)
+    shares, off = search.scanned()
+    roots = search.roots(shares, off)
+    nearest, message = None, f"{len(roots)} found"
+    if not roots:
+        message = "no case in the range has the measure"
+        if np.isfinite(off).any():
+            share = float(shares[np.nanargmin(np.abs(off))])
+            nearest = Root(Estimate(search.value(share), 0.0), search.reached(share))
+            message = "no value in the range gives this"
+    return Solved(
+        knob=knob.name,
+        units=knob.units,
+        measure=reading,
+        wanted=amount,
+        roots=roots,
+        nearest=nearest,
+        scanned=np.array([knob.at(shares), off + amount]),
+        status=0 if roots else 1,
+        message=message,
+    )
 
 
 class _Search:
     """Where a measure of one knob is what is wanted; shares of the way stand for its values."""
 
-    def __init__(self, asked: Asked, knob: Interval, reading: Reading, wanted: float) -> None:
-        self._asked, self._knob = asked, knob
-        self._reading, self._wanted = reading, wanted
-        self._known: dict[float, Estimate] = {}
+    def __init__(self, asked: Asked, knob: Interval, wanted: float) -> None:
+        self._asked, self._knob, self._wanted = asked, knob, wanted
 
-    def solved(self) -> Solved:
-        shares = self._points()
-        estimates = [self._estimate(share) for share in shares.tolist()]
-        off = np.array([estimate.value for estimate in estimates]) - self._wanted
-        roots = [self._root(share) for share in shares[off == 0.0].tolist()]
-        for k in np.flatnonzero(off[:-1] * off[1:] < 0.0).tolist():
-            root = self._polished(float(shares[k]), float(shares[k + 1]))
-            roots += [] if root is None else [root]
-        roots.sort(key=lambda root: root.value.value)
-        status, message, nearest = 0, f"{len(roots)} found", None
-        if not roots:
-            status, message = 1, "no value in the range gives this"
-            if np.isfinite(off).any():
-                k = int(np.nanargmin(np.abs(off)))
-                value = Estimate(self._value(float(shares[k])), 0.0)
-                nearest = Root(value, estimates[k])
-            else:
-                message = "no case in the range has the measure"
-        scanned = np.array([self._knob.at(shares), off + self._wanted])
-        knob = self._knob
-        return Solved(
-            knob=knob.name,
-            units=knob.units,
-            measure=self._reading,
-            wanted=self._wanted,
-            roots=tuple(roots),
-            nearest=nearest,
-            scanned=scanned,
-            status=status,
-            message=message,
-        )
+    def value(self, share: float) -> float:
+        return float(self._knob.at(np.array(share)))
 
-    def _points(self) -> Array:
-        """Evenly spaced shares, and those where the measure turns towards what is wanted."""
+    def reached(self, share: float) -> Estimate:
+        return self._asked.at(self.value(share))[0]
+
+    def off(self, share: float) -> float:
+        return self.reached(share).value - self._wanted
+
+    def scanned(self) -> tuple[Array, Array]:
+        """Evenly spaced shares, and those where the measure turns towards what is wanted; and by
+        how much it is off there."""
         shares = np.linspace(0.0, 1.0, _POINTS)
-        off = np.array([self._estimate(share).value for share in shares.tolist()]) - self._wanted
+        off = np.array([self.off(share) for share in shares.tolist()])
         inner, before, after = off[1:-1], off[:-2], off[2:]
         nearest = np.abs(inner) < np.minimum(np.abs(before), np.abs(after))
         turns = 1 + np.flatnonzero(nearest & (inner * before > 0.0) & (inner * after > 0.0))
-        more = [
-            self._turn(float(shares[k - 1]), float(shares[k + 1]), float(np.sign(off[k])))
-            for k in turns.tolist()
-        ]
-        return np.unique([*shares, *more])
+        more = [self._turn(shares[k - 1], shares[k + 1], np.sign(off[k])) for k in turns.tolist()]
+        shares = np.unique([*shares, *more])
+        return shares, np.array([self.off(share) for share in shares.tolist()])
 
     def _turn(self, low: float, high: float, side: float) -> float:
         """Where between two shares the measure, on one side of what is wanted, is nearest to it or
         farthest beyond it."""
         turn = minimize_scalar(
-            lambda share: np.nan_to_num(side * self._estimate(share).value, nan=math.inf),
+            lambda share: np.nan_to_num(side * self.reached(share).value, nan=math.inf),
             bounds=(low, high),
             method="bounded",
             options={"xatol": _TURN},
         )
         return float(turn.x)
 
+    def roots(self, shares: Array, off: Array) -> tuple[Root, ...]:
+        """Those on points of the scan, and those between two of them, by their values."""
+        roots = [self._root(share) for share in shares[off == 0.0].tolist()]
+        for k in np.flatnonzero(off[:-1] * off[1:] < 0.0).tolist():
+            root = self._polished(float(shares[k]), float(shares[k + 1]))
+            roots += [] if root is None else [root]
+        return tuple(sorted(roots, key=lambda root: root.value.value))
+
     def _polished(self, low: float, high: float) -> Root | None:
         """The crossing between two shares; none where a case in between has no measure, or where
         the measure jumps across what is wanted."""
         try:
-            share = float(brentq(self._off, low, high, xtol=_CLOSE, rtol=1e-14))
-        except _Missing:
+            share = float(brentq(self.off, low, high, xtol=_CLOSE, rtol=1e-14))
+        except ValueError:  # of a NaN
             return None
         root = self._root(share)
-        rise = abs(self._off(high) - self._off(low)) / (high - low)
+        rise = abs(self.off(high) - self.off(low)) / (high - low)
         jumps = abs(root.reached.value - self._wanted) > 1e3 * (_CLOSE * rise + root.reached.error)
         return None if jumps else root
 
     def _root(self, share: float) -> Root:
         step = 1e-4 if share < 0.5 else -1e-4
-        here, near = self._estimate(share), self._estimate(share + step)
-        slope = abs(near.value - here.value) / abs(self._value(share + step) - self._value(share))
+        here, near = self.reached(share), self.reached(share + step)
+        slope = abs(near.value - here.value) / abs(self.value(share + step) - self.value(share))
         span = _CLOSE * abs(self._knob.high - self._knob.low)
         error = here.error / slope + span if slope > 0.0 else math.inf
-        return Root(Estimate(self._value(share), error), here)
-
-    def _off(self, share: float) -> float:
-        off = self._estimate(share).value - self._wanted
-        if math.isnan(off):
-            raise _Missing
-        return off
-
-    def _estimate(self, share: float) -> Estimate:
-        if share not in self._known:
-            (self._known[share],) = self._asked.at((self._value(share),), (self._reading,))
-        return self._known[share]
-
-    def _value(self, share: float) -> float:
-        return float(self._knob.at(np.array(share)))
-
-
-class _Missing(Exception):
-    """A case that has no measure."""
+        return Root(Estimate(self.value(share), error), here)
