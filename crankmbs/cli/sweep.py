@@ -68,9 +68,9 @@ def sweep(
     from crankmbs.sweep.summary import summary
 
     path = scene_path(scene)
-    cases_of = _cases(vary or [], cases, (sample, n, seed))
     with _as_options():
-        plan = plan_of(load_scene(path), cases_of(), keep)
+        over = _cases(vary or [], cases, (sample, n, seed))
+        plan = plan_of(load_scene(path), over, keep)
     if workers is not None and cluster is not None:
         raise InputError("--workers and --cluster both say where cases are computed; give one")
     _check_free(out, resume)
@@ -120,10 +120,8 @@ def varied(texts: list[str]) -> dict[str, str]:
     return ranges
 
 
-def _cases(
-    vary: list[str], cases: Path | None, drawn: tuple[str | None, int, int]
-) -> Callable[[], object]:
-    """A function that makes the cases from the options."""
+def _cases(vary: list[str], cases: Path | None, drawn: tuple[str | None, int, int]) -> object:
+    """What the options say is varied."""
     ranges, (method, n, seed) = varied(vary), drawn
     if (cases is None) == (not ranges):
         came = "neither" if cases is None else "both"
@@ -131,12 +129,12 @@ def _cases(
             f"--vary says what is varied, as {_RANGE}, or --cases a file of cases; {came} came"
         )
     if method is None:
-        return lambda: ranges or cases
+        return ranges or cases
     if cases is not None:
         raise InputError("--sample spreads cases over ranges of --vary; a file has its own")
     from crankmbs.sweep.sample import Sample
 
-    return lambda: Sample(ranges, n, method, seed)
+    return Sample(ranges, n, method, seed)
 
 
 def _fill(plan: Plan, out: Path, workers: int | None, cluster: str | None) -> None:

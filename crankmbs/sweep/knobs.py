@@ -23,7 +23,7 @@ from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.scene.units import quantity, unit_of
 from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.pressure_table import TABLE_KNOBS, TABLE_VALUES, table_at
-from crankmbs.sweep.reading import is_measure
+from crankmbs.sweep.reading import reading_of
 
 __all__ = ["DERIVED", "Interval", "Knob", "interval_of", "knob_of", "number_at"]
 
@@ -65,10 +65,10 @@ class Interval(NamedTuple):
     units: str
     low: float
     high: float
-    log: bool
-    whole: bool
+    log: bool = False
+    whole: bool = False
 
-    def at(self, share: Array) -> Array:
+    def at(self, share: Array | float) -> Array:
         """The values at shares of the way, shape (n,); on a logarithmic way where asked."""
         if self.log:
             return np.asarray(self.low * (self.high / self.low) ** share)
@@ -109,8 +109,8 @@ def knob_of(scene: Scene, name: str, values: object, most: int = _MOST) -> Knob:
     """
     kind = _kind(scene, name)
     if isinstance(values, str):
-        if _RANGE.fullmatch(values):
-            return _spaced(kind, values)
+        if match := _RANGE.fullmatch(values):
+            return _spaced(kind, match)
         items: Sequence[object] = [item.strip() for item in values.split(",")]
     elif isinstance(values, Sequence | np.ndarray):
         items = values.tolist() if isinstance(values, np.ndarray) else values
@@ -170,13 +170,14 @@ def _kind(scene: Scene, name: str) -> _Kind:
     try:
         place = field_at(scene, name)
     except InputError as error:
-        if is_measure(name, columns_of(scene)):
-            raise InputError(
-                f"{name}: is a measure, which follows from a case; vary what it depends on, such "
-                f'as crank.inertia, and draw over it: crankmbs plot SWEEP --over "{name}"'
-            ) from None
-        near = did_you_mean(name, list(DERIVED))
-        raise InputError(f"{error}{near}" if near else str(error)) from None
+        try:
+            reading_of(name, columns_of(scene))
+        except InputError:
+            raise InputError(f"{error}{did_you_mean(name, list(DERIVED))}") from None
+        raise InputError(
+            f"{name}: is a measure, which follows from a case; vary what it depends on, such "
+            f'as crank.inertia, and draw over it: crankmbs plot SWEEP --over "{name}"'
+        ) from None
     if place is None:
         return _Kind(dotted, None, False)
     whole = place[0].__pydantic_fields__[place[1]].annotation is int
@@ -191,15 +192,13 @@ def _interval(kind: _Kind, match: re.Match[str], log: bool) -> Interval:
     return Interval(kind.name, kind.unit, low, high, log, kind.whole)
 
 
-def _spaced(kind: _Kind, text: str) -> Knob:
-    match = _RANGE.fullmatch(text)
-    assert match is not None
+def _spaced(kind: _Kind, match: re.Match[str]) -> Knob:
     count, _, way = (match[4] or ":")[1:].partition(":")
     number = int(count) if count.isdecimal() and len(count) < 9 else 0
     if not 2 <= number <= _MOST or way not in ("", "log"):
         raise InputError(
             f"{kind.name}: a range needs how many values it has, from 2 to {_MOST}, then perhaps "
-            f"log; {shown(text)} came; {_GRAMMAR}"
+            f"log; {shown(match[0])} came; {_GRAMMAR}"
         )
     if (
         kind.dimension is None and match[3] and kind.name not in DERIVED

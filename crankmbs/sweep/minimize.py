@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.optimize import NonlinearConstraint
 from scipy.optimize import minimize as polished
 
@@ -16,7 +17,7 @@ from crankmbs.measures import Estimate
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene, check_scene
 from crankmbs.sweep.columns import columns_of
-from crankmbs.sweep.knobs import Interval, interval_of
+from crankmbs.sweep.knobs import interval_of
 from crankmbs.sweep.reading import Reading, check_free, reading_of
 from crankmbs.sweep.sample import Sample
 from crankmbs.sweep.solve import Asked, asked_of
@@ -29,6 +30,8 @@ _AGAIN, _CLEARLY = 4, 1e-5  # simplexes at most; of the measure: one that gained
 _FIRST, _LAST = 0.05, 1e-6  # steps of the polish, shares of a range
 _AT = 1e-5  # of a range: so near its end a knob has ended there
 _SLACK = 1e-6  # of a bound: so far a condition may be missed
+
+Point = Sequence[float]
 
 
 @dataclass(frozen=True)
@@ -103,76 +106,68 @@ def minimize(
     readings = (reading, *(condition[0] for condition in conditions))
     for each in readings:
         check_free(scene, each, [knob.name for knob in knobs])
-    asked = Asked(scene, tuple(knob.name for knob in knobs), readings)
-    descent = _Descent(asked, knobs, [(sign, bound) for _, sign, bound in conditions])
-    best, status, message = descent.ended()
-    reached, *others = descent.estimates(best)
-    values = zip(knobs, descent.values(best), strict=True)
+    asked = Asked(scene, knobs, readings)
+    best, status, message = _Descent(
+        asked, [knob.name for knob in knobs], [(sign, bound) for _, sign, bound in conditions]
+    ).ended()
+    reached, *others = asked.at(*best)
+    pairs = zip(conditions, others, strict=True)
     return Minimum(
-        values={knob.name: value for knob, value in values},
+        values={knob.name: float(knob.at(x)) for knob, x in zip(knobs, best, strict=True)},
         units={knob.name: knob.units for knob in knobs},
         measure=reading,
         reached=reached,
-        conditions=tuple(
-            Condition(*wanted, estimate)
-            for wanted, estimate in zip(conditions, others, strict=True)
-        ),
-        evaluations=len(descent.tried),
+        conditions=tuple(Condition(*wanted, estimate) for wanted, estimate in pairs),
+        evaluations=len(asked.known),
         status=status,
         message=message,
     )
 
 
 class _Descent:
-    """A measure and its conditions, each a sign and a bound, over shares of the ranges.
+    """A measure and its conditions, each a sign and a bound, over shares of the ranges."""
 
-    tried : values of the knobs -> the point
-    """
+    def __init__(self, asked: Asked, names: list[str], bounds: list[tuple[str, float]]) -> None:
+        self._asked, self._names, self._bounds = asked, names, bounds
 
-    def __init__(
-        self, asked: Asked, knobs: tuple[Interval, ...], bounds: list[tuple[str, float]]
-    ) -> None:
-        self._asked, self._knobs, self._bounds = asked, knobs, bounds
-        self.tried: dict[tuple[float, ...], Array] = {}
-
-    def ended(self) -> tuple[Array, int, str]:
+    def ended(self) -> tuple[Point, int, str]:
         """The best point, status and message."""
-        count = len(self._knobs)
+        count = len(self._names)
         drawn = 2 ** math.ceil(math.log2(_POINTS * count))
-        points = Sample({knob.name: "" for knob in self._knobs}, drawn).points()
-        ranks = [self._rank(point) for point in points]
-        best = points[ranks.index(min(ranks))]
-        if min(ranks)[1] == math.inf:
+        points = Sample(dict.fromkeys(self._names, ""), drawn).points().tolist()
+        best = min(points, key=self._rank)
+        if self._rank(best)[1] == math.inf:
             return best, 1, "no case in the ranges has the measure"
-        scale = max(abs(least) for _, least in ranks if least < math.inf) or 1.0
-        options: Any = {"maxfev": _MOST * count}
-        options |= {"initial_tr_radius": _FIRST, "final_tr_radius": _LAST}
+        scale = max(abs(x) for _, x in map(self._rank, points) if x < math.inf) or 1.0
         constraint = NonlinearConstraint(self._excess, -np.inf, 0.0)
+        options: Any = {"initial_tr_radius": _FIRST, "final_tr_radius": _LAST}
         polished(  # type: ignore[call-overload]
-            lambda share: self.estimates(share)[0].value / scale,
+            lambda point: self._estimates(point)[0].value / scale,
             best,
             method="COBYQA",
             bounds=[(0.0, 1.0)] * count,
             constraints=[constraint] if self._bounds else [],
-            options=options,
+            options=options | {"maxfev": _MOST * count},
         )
         best = self._best()
         if self._rank(best)[0] > 0.0:
             return best, 1, "nothing in the ranges fulfils the conditions"
         for _ in range(_AGAIN):
-            before, best = best, self._down_kinks(best)
+            before, best = best, self._down_kinks(np.array(best))
             if self._rank(before)[1] - self._rank(best)[1] <= _CLEARLY * scale:
                 break
-        return best, 0, f"found{self._at_bounds(best)}"
+        ends = [n for n, x in zip(self._names, best, strict=True) if min(x, 1.0 - x) <= _AT]
+        bound = f", at a bound of {' and '.join(ends)}: beyond it there may be less"
+        return best, 0, f"found{bound if ends else ''}"
 
-    def _down_kinks(self, start: Array) -> Array:
+    def _down_kinks(self, start: Array) -> Point:
         """The best point known after Nelder and Mead's simplex went on from one, within the
         conditions: a peak that is now one, now another has a valley whose floor is a kink, in which
         a quadratic model stops."""
         inward = np.where(start < 0.5, _FIRST, -_FIRST)
 
-        def walled(share: Array) -> float:
-            excess, least = self._rank(share)
+        def walled(point: Array) -> float:
+            excess, least = self._rank(point)
             return math.inf if excess > 0.0 else least
 
         polished(
@@ -189,41 +184,24 @@ class _Descent:
         )
         return self._best()
 
-    def _at_bounds(self, share: Array) -> str:
-        """The knobs that ended at a bound of their range, in words."""
-        ends = np.minimum(share, 1.0 - share) <= _AT
-        names = [knob.name for knob, ended in zip(self._knobs, ends, strict=True) if ended]
-        return (
-            f", at a bound of {' and '.join(names)}: beyond it there may be less" if names else ""
-        )
+    def _best(self) -> Point:
+        return min(self._asked.known, key=self._rank)
 
-    def _best(self) -> Array:
-        return min(self.tried.values(), key=self._rank)
-
-    def _rank(self, share: Array) -> tuple[float, float]:
+    def _rank(self, point: ArrayLike) -> tuple[float, float]:
         """By how much the conditions are missed, then the measure; infinite where it has none."""
-        excess = float(self._excess(share).max(initial=0.0))
-        least = self.estimates(share)[0].value
+        excess = float(self._excess(point).max(initial=0.0))
+        least = self._estimates(point)[0].value
         if math.isnan(excess + least):
             return math.inf, math.inf
         return excess if excess > _SLACK else 0.0, least
 
-    def _excess(self, share: Array) -> Array:
+    def _excess(self, point: ArrayLike) -> Array:
         """How far each condition is from being fulfilled, over its bound; at most 0 where it is."""
         excess = []
-        for (sign, bound), estimate in zip(self._bounds, self.estimates(share)[1:], strict=True):
+        for (sign, bound), estimate in zip(self._bounds, self._estimates(point)[1:], strict=True):
             beyond = (estimate.value - bound) / (abs(bound) or 1.0)
             excess.append(beyond if sign.startswith("<") else -beyond)
         return np.array(excess)
 
-    def estimates(self, share: Array) -> tuple[Estimate, ...]:
-        """Of the measure and of what is bounded."""
-        share = np.clip(share, 0.0, 1.0)
-        values = self.values(share)
-        self.tried[values] = share
-        return self._asked.at(*values)
-
-    def values(self, share: Array) -> tuple[float, ...]:
-        """Of the knobs."""
-        pairs = zip(self._knobs, share, strict=True)
-        return tuple(float(knob.at(part)) for knob, part in pairs)
+    def _estimates(self, point: ArrayLike) -> tuple[Estimate, ...]:
+        return self._asked.at(*np.clip(point, 0.0, 1.0).tolist())

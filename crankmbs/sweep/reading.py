@@ -15,7 +15,7 @@ from crankmbs.sweep.columns import Column
 if TYPE_CHECKING:
     from crankmbs.scene.scene import Scene
 
-__all__ = ["Reading", "amount_of", "check_free", "is_measure", "reading_of"]
+__all__ = ["Reading", "amount_of", "check_free", "reading_of"]
 
 _DEVIATION = "lecture_deviation"
 _LECTURES = {
@@ -128,20 +128,6 @@ def _by_lecture(text: str, words: str, columns: Mapping[str, Column]) -> Reading
         known = there_are(quantity, list(QUANTITIES))
         raise InputError(f"{shown(text)}: no lecture formula is for {shown(quantity)}{known}")
     return Reading(_DEVIATION, columns[_DEVIATION], name, quantity)
-
-
-def is_measure(text: str, columns: Mapping[str, Column]) -> bool:
-    """Whether `reading_of` knows it.
-
-    >>> from crankmbs.sweep.columns import columns_of
-    >>> is_measure("rod ratio", columns_of(load_scene("propeller")))
-    False
-    """
-    try:
-        reading_of(text, columns)
-    except InputError:
-        return False
-    return True
 
 
 def _key(words: str) -> frozenset[str]:

@@ -64,25 +64,25 @@ class Solved:
 class Asked:
     """What is read of single cases of a scene, each computed once.
 
-    known : values of the knobs -> what was read
+    known : shares of the ranges of the knobs -> what was read
     """
 
-    def __init__(self, scene: Scene, names: tuple[str, ...], readings: tuple[Reading, ...]) -> None:
-        self._scene, self._names, self._readings = scene, names, readings
+    def __init__(
+        self, scene: Scene, knobs: tuple[Interval, ...], readings: tuple[Reading, ...]
+    ) -> None:
+        self._scene, self._knobs, self._readings = scene, knobs, readings
         self.known: dict[tuple[float, ...], tuple[Estimate, ...]] = {}
 
-    def at(self, *values: float) -> tuple[Estimate, ...]:
+    def at(self, *shares: float) -> tuple[Estimate, ...]:
         """What is read of a case; NaN where it does not reach its end."""
-        if values not in self.known:
-            block = solved(Job(self._scene, self._names, [values]))
+        if shares not in self.known:
+            values = tuple(float(knob.at(x)) for knob, x in zip(self._knobs, shares, strict=True))
+            block = solved(Job(self._scene, tuple(knob.name for knob in self._knobs), [values]))
+            pairs = [reading.of(block) for reading in self._readings]
             if block["status"][0] != 0:
-                self.known[values] = (Estimate(math.nan, math.nan),) * len(self._readings)
-            else:
-                self.known[values] = tuple(
-                    Estimate(float(value[0]), float(error[0]))
-                    for value, error in (reading.of(block) for reading in self._readings)
-                )
-        return self.known[values]
+                pairs = [([math.nan], [math.nan])] * len(pairs)
+            self.known[shares] = tuple(Estimate(float(x[0]), float(dx[0])) for x, dx in pairs)
+        return self.known[shares]
 
 
 def asked_of(scene: Scene, text: str, signs: str) -> tuple[Reading, str, float]:
@@ -147,27 +147,7 @@ def solve(scene: Scene, vary: dict[str, str], wanted: str) -> Solved:
         raise InputError(f"{knob.name}: is a whole number, and sweep finds the best of those")
     reading, _, amount = asked_of(scene, wanted, "=")
     check_free(scene, reading, [knob.name])
-    search = _Search(Asked(scene, (knob.name,), (reading,)), knob, amount)
-    shares, off = search.scanned()
-    roots = search.roots(shares, off)
-    nearest, message = None, f"{len(roots)} found"
-    if not roots:
-        message = "no case in the range has the measure"
-        if np.isfinite(off).any():
-            share = float(shares[np.nanargmin(np.abs(off))])
-            nearest = Root(Estimate(search.value(share), 0.0), search.reached(share))
-            message = "no value in the range gives this"
-    return Solved(
-        knob=knob.name,
-        units=knob.units,
-        measure=reading,
-        wanted=amount,
-        roots=roots,
-        nearest=nearest,
-        scanned=np.array([knob.at(shares), off + amount]),
-        status=0 if roots else 1,
-        message=message,
-    )
+    return _Search(Asked(scene, (knob,), (reading,)), knob, amount).solved(reading)
 
 
 class _Search:
@@ -176,62 +156,75 @@ class _Search:
     def __init__(self, asked: Asked, knob: Interval, wanted: float) -> None:
         self._asked, self._knob, self._wanted = asked, knob, wanted
 
-    def value(self, share: float) -> float:
-        return float(self._knob.at(np.array(share)))
+    def solved(self, reading: Reading) -> Solved:
+        shares = self._points()
+        off = np.array([self._off(share) for share in shares.tolist()])
+        roots = [self._root(share) for share in shares[off == 0.0].tolist()]
+        for k in np.flatnonzero(off[:-1] * off[1:] < 0.0).tolist():
+            root = self._polished(float(shares[k]), float(shares[k + 1]))
+            roots += [] if root is None else [root]
+        nearest, message = None, f"{len(roots)} found"
+        if not roots:
+            message = "no case in the range has the measure"
+            if np.isfinite(off).any():
+                share = float(shares[np.nanargmin(np.abs(off))])
+                nearest = Root(Estimate(float(self._knob.at(share)), 0.0), self._reached(share))
+                message = "no value in the range gives this"
+        return Solved(
+            knob=self._knob.name,
+            units=self._knob.units,
+            measure=reading,
+            wanted=self._wanted,
+            roots=tuple(sorted(roots, key=lambda root: root.value.value)),
+            nearest=nearest,
+            scanned=np.array([self._knob.at(shares), off + self._wanted]),
+            status=0 if roots else 1,
+            message=message,
+        )
 
-    def reached(self, share: float) -> Estimate:
-        return self._asked.at(self.value(share))[0]
-
-    def off(self, share: float) -> float:
-        return self.reached(share).value - self._wanted
-
-    def scanned(self) -> tuple[Array, Array]:
-        """Evenly spaced shares, and those where the measure turns towards what is wanted; and by
-        how much it is off there."""
+    def _points(self) -> Array:
+        """Evenly spaced shares, and those where the measure turns towards what is wanted."""
         shares = np.linspace(0.0, 1.0, _POINTS)
-        off = np.array([self.off(share) for share in shares.tolist()])
+        off = np.array([self._off(share) for share in shares.tolist()])
         inner, before, after = off[1:-1], off[:-2], off[2:]
         nearest = np.abs(inner) < np.minimum(np.abs(before), np.abs(after))
         turns = 1 + np.flatnonzero(nearest & (inner * before > 0.0) & (inner * after > 0.0))
         more = [self._turn(shares[k - 1], shares[k + 1], np.sign(off[k])) for k in turns.tolist()]
-        shares = np.unique([*shares, *more])
-        return shares, np.array([self.off(share) for share in shares.tolist()])
+        return np.unique([*shares, *more])
 
     def _turn(self, low: float, high: float, side: float) -> float:
         """Where between two shares the measure, on one side of what is wanted, is nearest to it or
         farthest beyond it."""
         turn = minimize_scalar(
-            lambda share: np.nan_to_num(side * self.reached(share).value, nan=math.inf),
+            lambda share: np.nan_to_num(side * self._off(share), nan=math.inf),
             bounds=(low, high),
             method="bounded",
             options={"xatol": _TURN},
         )
         return float(turn.x)
 
-    def roots(self, shares: Array, off: Array) -> tuple[Root, ...]:
-        """Those on points of the scan, and those between two of them, by their values."""
-        roots = [self._root(share) for share in shares[off == 0.0].tolist()]
-        for k in np.flatnonzero(off[:-1] * off[1:] < 0.0).tolist():
-            root = self._polished(float(shares[k]), float(shares[k + 1]))
-            roots += [] if root is None else [root]
-        return tuple(sorted(roots, key=lambda root: root.value.value))
-
     def _polished(self, low: float, high: float) -> Root | None:
         """The crossing between two shares; none where a case in between has no measure, or where
         the measure jumps across what is wanted."""
         try:
-            share = float(brentq(self.off, low, high, xtol=_CLOSE, rtol=1e-14))
+            share = float(brentq(self._off, low, high, xtol=_CLOSE, rtol=1e-14))
         except ValueError:  # of a NaN
             return None
         root = self._root(share)
-        rise = abs(self.off(high) - self.off(low)) / (high - low)
-        jumps = abs(root.reached.value - self._wanted) > 1e3 * (_CLOSE * rise + root.reached.error)
+        rise = abs(self._off(high) - self._off(low)) / (high - low)
+        jumps = abs(self._off(share)) > 1e3 * (_CLOSE * rise + root.reached.error)
         return None if jumps else root
 
     def _root(self, share: float) -> Root:
-        step = 1e-4 if share < 0.5 else -1e-4
-        here, near = self.reached(share), self.reached(share + step)
-        slope = abs(near.value - here.value) / abs(self.value(share + step) - self.value(share))
-        span = _CLOSE * abs(self._knob.high - self._knob.low)
-        error = here.error / slope + span if slope > 0.0 else math.inf
-        return Root(Estimate(self.value(share), error), here)
+        beside = share + (1e-4 if share < 0.5 else -1e-4)
+        value, near = float(self._knob.at(share)), float(self._knob.at(beside))
+        slope = abs(self._off(beside) - self._off(share)) / abs(near - value)
+        span, reached = _CLOSE * abs(self._knob.high - self._knob.low), self._reached(share)
+        error = reached.error / slope + span if slope > 0.0 else math.inf
+        return Root(Estimate(value, error), reached)
+
+    def _off(self, share: float) -> float:
+        return self._reached(share).value - self._wanted
+
+    def _reached(self, share: float) -> Estimate:
+        return self._asked.at(share)[0]
