@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from crankmbs.sweep.plan import Plan
     from crankmbs.sweep.summary import Bounds, Summary
 
-__all__ = ["sweep", "varied", "window_note"]
+__all__ = ["answered", "sweep", "varied"]
 
 _ENDED = {
     0: "reached their end",
@@ -86,14 +86,18 @@ def sweep(
         raise Exit(3)
 
 
-def window_note(scene: Scene) -> str:
-    """Over what measures of cases are, where that need not be a settled motion."""
-    if scene.settles or scene.start is None:
-        return ""
-    return (
-        "each run as the scene has it, measured over the last cycle, settled or not; "
-        'until = "settled" in [run] asks for settled motions'
-    )
+def answered(name: str, scene: Scene, report: str, *, lacks: bool) -> None:
+    """Print a report of cases of a scene, and over what their measures are where that need not be a
+    settled motion; end with status 3 where it lacks something."""
+    parts = [heading(name, scene.title), report]
+    if scene.start is not None and not scene.settles:
+        parts.append(
+            "each run as the scene has it, measured over the last cycle, settled or not; "
+            'until = "settled" in [run] asks for settled motions'
+        )
+    echo("\n\n".join(parts))
+    if lacks:
+        raise Exit(3)
 
 
 def varied(texts: list[str]) -> dict[str, str]:

@@ -15,10 +15,9 @@ from crankmbs.measures import Estimate
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.scene.scene import Scene, check_scene
 from crankmbs.sweep.cases import Cases
-from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.knobs import Interval, Knob, interval_of
 from crankmbs.sweep.plan import Plan
-from crankmbs.sweep.reading import Reading, check_free, reading_of
+from crankmbs.sweep.reading import Reading, free_reading_of
 from crankmbs.sweep.run import run_in_memory
 from crankmbs.sweep.sample import Sample
 
@@ -108,12 +107,9 @@ def sobol_indices(
             f"n must be a power of two from 2 on, or Sobol's points are not balanced; {n} came, "
             f"{2 ** n.bit_length()} is the next"
         )
-    columns = columns_of(scene)
-    words = [measures] if isinstance(measures, str) else list(measures)
-    readings = [reading_of(text, columns) for text in words]
     knobs = tuple(interval_of(scene, *item) for item in vary.items())
-    for reading in readings:
-        check_free(scene, reading, [knob.name for knob in knobs])
+    words, names = [measures] if isinstance(measures, str) else measures, [k.name for k in knobs]
+    readings = [free_reading_of(scene, text, names) for text in words]
     plan = Plan(scene, Cases(_design(knobs, n, seed), grid=False), series=False)
     data = run_in_memory(plan, executor)
     return tuple(_indices_of(plan, data, reading, n, seed) for reading in readings)

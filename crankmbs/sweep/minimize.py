@@ -16,9 +16,8 @@ from crankmbs.errors import InputError
 from crankmbs.measures import Estimate
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene, check_scene
-from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.knobs import interval_of
-from crankmbs.sweep.reading import Reading, check_free, reading_of
+from crankmbs.sweep.reading import Reading, free_reading_of
 from crankmbs.sweep.sample import Sample
 from crankmbs.sweep.solve import Asked, asked_of
 
@@ -101,15 +100,12 @@ def minimize(
     knobs = tuple(interval_of(scene, *item) for item in drawn.vary.items())
     if not knobs or any(knob.whole for knob in knobs):
         raise InputError("vary: needs ranges of numbers that are not whole; sweep compares others")
-    reading = reading_of(measure, columns_of(scene))
-    conditions = [asked_of(scene, text, "<= >= < >") for text in subject_to]
-    readings = (reading, *(condition[0] for condition in conditions))
-    for each in readings:
-        check_free(scene, each, [knob.name for knob in knobs])
-    asked = Asked(scene, knobs, readings)
-    best, status, message = _Descent(
-        asked, [knob.name for knob in knobs], [(sign, bound) for _, sign, bound in conditions]
-    ).ended()
+    names = [knob.name for knob in knobs]
+    reading = free_reading_of(scene, measure, names)
+    conditions = [asked_of(scene, names, text, "<= >= < >") for text in subject_to]
+    asked = Asked(scene, knobs, (reading, *(condition[0] for condition in conditions)))
+    bounds = [(sign, bound) for _, sign, bound in conditions]
+    best, status, message = _Descent(asked, names, bounds).ended()
     reached, *others = asked.at(*best)
     pairs = zip(conditions, others, strict=True)
     return Minimum(

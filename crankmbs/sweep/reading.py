@@ -4,25 +4,25 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from crankmbs.compare import LECTURES, QUANTITIES, short_name
 from crankmbs.errors import InputError, shown
+from crankmbs.scene.scene import Scene
 from crankmbs.scene.sentences import there_are
-from crankmbs.scene.units import quantity
-from crankmbs.sweep.columns import Column
+from crankmbs.scene.units import quantity, unit_of
+from crankmbs.sweep.columns import Column, columns_of
 
-if TYPE_CHECKING:
-    from crankmbs.scene.scene import Scene
-
-__all__ = ["Reading", "amount_of", "check_free", "reading_of"]
+__all__ = ["Reading", "amount_of", "free_reading_of", "reading_of"]
 
 _DEVIATION = "lecture_deviation"
 _LECTURES = {
     key.partition(" ")[0].lower(): name for name in LECTURES for key in (name, short_name(name))
 }  # "untruncated", "yi", and by key of the bibliography "s1"
-_DIMENSIONS = {"N": "force", "N m": "torque", "Pa": "pressure", "N/m^2": "pressure", "J": "torque"}
-_DIMENSIONS |= {"rad": "angle", "rad/s": "angular speed", "m/s": "speed", "W": "power"}
+_DIMENSIONS = {
+    unit_of(name): name
+    for name in ("force", "torque", "pressure", "angle", "angular speed", "speed", "power")
+} | {"N/m^2": "pressure", "J": "torque"}
 _SHARE = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(%?)\s*")
 _OF_SPEED = ("fluctuation", "mean_speed", "highest_speed", "lowest_speed")
 _LARGEST = {"peak", "largest", "max"}
@@ -150,15 +150,18 @@ def _keys(name: str, long_name: str) -> set[frozenset[str]]:
     return keys
 
 
-def check_free(scene: Scene, reading: Reading, names: Sequence[str]) -> None:
-    """Refuse what a prescribed speed says itself, where nothing that is varied changes it.
+def free_reading_of(scene: Scene, text: str, names: Sequence[str]) -> Reading:
+    """What is read of the cases of a scene in which these knobs are varied.
 
     Raises
     ------
-    InputError : what is asked for, why it does not change, and the way out
+    InputError : no such measure, or one that a prescribed speed says itself, where nothing that is
+        varied changes it
 
-    >>> check_free(load_scene("propeller"), Reading("fluctuation", Column("1", "")), ["rod.length"])
+    >>> free_reading_of(load_scene("propeller"), "fluctuation", ["rod.length"]).column
+    'fluctuation'
     """
+    reading = reading_of(text, columns_of(scene))
     of_speed = reading.column in _OF_SPEED and not any(name.startswith("motion") for name in names)
     if scene.motion is not None and of_speed:
         raise InputError(
@@ -166,6 +169,7 @@ def check_free(scene: Scene, reading: Reading, names: Sequence[str]) -> None:
             "what is varied does not change it; free the crank with [start] and its loads, "
             "[[torque]], as crankmbs flywheel does by itself, or vary motion.speed"
         )
+    return reading
 
 
 def amount_of(text: str, reading: Reading) -> float:

@@ -10,10 +10,9 @@ import numpy as np
 from crankmbs.errors import InputError
 from crankmbs.measures import Estimate
 from crankmbs.scene.scene import Scene, check_scene
-from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.knobs import Interval, number_at
 from crankmbs.sweep.pressure_table import step_from_zero
-from crankmbs.sweep.reading import Reading, check_free, reading_of
+from crankmbs.sweep.reading import Reading, free_reading_of
 from crankmbs.sweep.solve import Asked
 
 __all__ = ["Sensitivity", "sensitivity"]
@@ -69,8 +68,7 @@ def sensitivity(scene: Scene, name: str, measure: str) -> Sensitivity:
     check_scene(scene)
     knob = number_at(scene, name)
     value = float(knob.values[0])
-    reading = reading_of(measure, columns_of(scene))
-    check_free(scene, reading, [knob.name])
+    reading = free_reading_of(scene, measure, [knob.name])
     step = step_from_zero(scene, knob.name) or _STEP * abs(value)
     if step == 0.0:
         raise InputError(f"{name}: is 0 in this scene, and steps are a share of it; give it a size")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,9 +15,8 @@ from crankmbs.measures import Estimate
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene, check_scene
 from crankmbs.sweep.block import Job, solved
-from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.knobs import Interval, interval_of
-from crankmbs.sweep.reading import Reading, amount_of, check_free, reading_of
+from crankmbs.sweep.reading import Reading, amount_of, free_reading_of
 
 __all__ = ["Asked", "Root", "Solved", "asked_of", "solve"]
 
@@ -85,16 +85,19 @@ class Asked:
         return self.known[shares]
 
 
-def asked_of(scene: Scene, text: str, signs: str) -> tuple[Reading, str, float]:
+def asked_of(
+    scene: Scene, names: Sequence[str], text: str, signs: str
+) -> tuple[Reading, str, float]:
     """A condition such as "fluctuation = 1 %": what is read, the sign, and how much, in SI units.
 
+    names : of what is varied
     signs : those that may stand there
 
     Raises
     ------
     InputError : no such condition
 
-    >>> asked_of(load_scene("propeller"), "fluctuation <= 1 %", "<= >=")[1:]
+    >>> asked_of(load_scene("propeller"), ["rod.length"], "fluctuation <= 1 %", "<= >=")[1:]
     ('<=', 0.01)
     """
     match = _EQUATION.fullmatch(text.strip()) if isinstance(text, str) else None
@@ -102,7 +105,7 @@ def asked_of(scene: Scene, text: str, signs: str) -> tuple[Reading, str, float]:
         raise InputError(
             f'{shown(text)} is no condition: write one such as "fluctuation {signs.split()[0]} 1 %"'
         )
-    reading = reading_of(match[1], columns_of(scene))
+    reading = free_reading_of(scene, match[1], names)
     try:
         return reading, match[2], amount_of(match[3], reading)
     except InputError as error:
@@ -145,8 +148,7 @@ def solve(scene: Scene, vary: dict[str, str], wanted: str) -> Solved:
     knob = interval_of(scene, name, text)
     if knob.whole:
         raise InputError(f"{knob.name}: is a whole number, and sweep finds the best of those")
-    reading, _, amount = asked_of(scene, wanted, "=")
-    check_free(scene, reading, [knob.name])
+    reading, _, amount = asked_of(scene, [knob.name], wanted, "=")
     return _Search(Asked(scene, (knob,), (reading,)), knob, amount).solved(reading)
 
 
