@@ -144,13 +144,10 @@ def _measured(measures: Measures) -> Row:
         pairs = np.array(estimates, dtype=np.float64).T
         row[name], row[f"{name}{_ERROR}"] = pairs if names[name].of else pairs[:, 0]
     for joint, of in _joints(scene).items():
-        places = np.array([_angle(*each, scene.period) for each in angles[f"{joint}_peak"]])
-        row[f"{joint}_peak_angle"] = places if of else places[0]
+        peaks = angles[f"{joint}_peak"]
+        places = [crank % scene.period if cycle is None else cycle for crank, cycle in peaks]
+        row[f"{joint}_peak_angle"] = np.array(places if of else places[0])
     return row
-
-
-def _angle(crank: float, cycle: float | None, period: float) -> float:
-    return crank % period if cycle is None else cycle
 
 
 def _lectured(result: Result) -> Row:
