@@ -25,6 +25,7 @@ from crankmbs.sweep.scenes import scene_of
 __all__ = ["Box", "Plan", "check_possible", "plan_of"]
 
 Box = tuple[slice, ...]
+"""The places of a block's cases along each dimension."""
 
 _KEEP = ("measures", "series")
 _SCENE = TypeAdapter(Scene)
@@ -51,7 +52,7 @@ class Plan:
 
     @cached_property
     def boxes(self) -> list[Box]:
-        """The places of the cases of each block, a part of every dimension."""
+        """Of every block, in the order of its cases."""
         along = [
             [slice(first, min(first + chunk, length)) for first in range(0, length, chunk)]
             for chunk, length in zip(self.chunks, self.cases.shape, strict=True)

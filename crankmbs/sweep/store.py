@@ -52,10 +52,9 @@ class Store:
     def __init__(self, path: Path, plan: Plan, group: zarr.Group) -> None:
         self._path, self._of = path, _measures(plan)
         self._arrays: dict[str, Any] = dict(group.arrays())
-        status = self._arrays["status"][:]
-        self.done = int(np.count_nonzero(status != _NOT_RUN))
-        first = [(box, status[tuple(part.start for part in box)]) for box in plan.boxes]
-        self.missing = [box for box, ended in first if ended == _NOT_RUN]
+        self.done = int(np.count_nonzero(self._arrays["status"][:] != _NOT_RUN))
+        blocks = zip(plan.boxes, _finished(group).flat, strict=True)
+        self.missing = [box for box, finished in blocks if not finished]
 
     def write(self, box: Box, block: Block) -> None:
         """Write a block, its status last.
