@@ -62,7 +62,7 @@ WITH_JOURNALS = [
 def test_shipped_scenes_agree(scene):
     (rows,) = rows_of([scene])
     alone, message = by_hand(scene)
-    assert set(rows.columns) == set(alone) == set(columns_of(scene, series=False))
+    assert set(rows.columns) == set(alone) == set(columns_of(scene))
     assert_agree(rows, 0, alone)
     assert rows.messages[0] == message.partition(";")[0]
     assert rows.columns["relative_error"][0] <= scene.run.rtol
@@ -200,12 +200,12 @@ def test_every_friction_is_a_machine_of_its_own():
 
 def test_a_load_that_stalls_the_crank_says_so_alone():
     names, values = ("torque[1].coefficient",), ((9.5e-5,), (0.0,), (3.0,))
-    block = solved(Job(SHIPPED[0], names, values, series=False))
-    assert block.status[0] == 0
+    block = solved(Job(SHIPPED[0], names, values))
+    assert block["status"][0] == 0
     for number in (1, 2):
         result = simulate(scene_of(SHIPPED[0], names, values[number]))
-        assert block.status[number] == result.status
-        assert block.message[number] == result.message
+        assert block["status"][number] == result.status
+        assert block["message"][number] == result.message
 
 
 def test_in_an_even_engine_the_other_cylinders_are_as_the_first():

@@ -56,7 +56,7 @@ SERVED = {
 @pytest.mark.parametrize("name", SERVED)
 def test_a_run_together_agrees_with_it_alone(name):
     (rows,), (alone, message) = rows_of([SERVED[name]]), by_hand(SERVED[name])
-    assert set(rows.columns) == set(alone) == set(columns_of(SERVED[name], series=False))
+    assert set(rows.columns) == set(alone) == set(columns_of(SERVED[name]))
     assert_agree(
         rows, 0, alone, least=1e-15 if name == "no gas" else 0.0
     )  # alone it rounds no load
@@ -177,11 +177,11 @@ def test_a_run_that_comes_to_rest_or_turns_back_is_followed_alone(until, load):
     scene = replace(PROPELLER, torque=(*PROPELLER.torque, Constant(torque=-1.0)))
     scene, values = scene.with_(run__until=until), ((-1.0,), (-900.0,))
     values = values if load.endswith("torque") else ((9.5e-5,), (0.1,))
-    block = solved(Job(scene, (load,), values, series=False))
-    assert block.status[0] == 0
+    block = solved(Job(scene, (load,), values))
+    assert block["status"][0] == 0
     result = simulate(scene_of(scene, (load,), values[1]))
-    assert block.status[1] == result.status
-    assert block.message[1] == result.message
+    assert block["status"][1] == result.status
+    assert block["message"][1] == result.message
     assert np.min(result.data["crank_speed"].values) < 100.0
 
 

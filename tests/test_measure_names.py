@@ -32,7 +32,7 @@ SHELLS = Bearings(crank_pin=SHELL, main_journal=SHELL)
 )
 def test_every_measure_that_is_printed_is_taken_by_its_name(name, changes):
     scene = load_scene(name).with_(**changes)
-    result, columns = simulate(scene), columns_of(scene, series=False)
+    result, columns = simulate(scene), columns_of(scene)
     row = row_of(result, None)
     printed = tables(result, result.measures())
     names = [line[0] for table in printed for line in table.rows]
@@ -48,7 +48,7 @@ def test_every_measure_that_is_printed_is_taken_by_its_name(name, changes):
         if f"{key}_error" in columns and key != "lecture_deviation"
     ]
     values = {
-        words: reading_of(words, columns).of_row(row).value
+        words: float(reading_of(words, columns).of(row)[0])
         for line in names
         for words in (line, line.partition(" [")[0])
     }
@@ -57,11 +57,11 @@ def test_every_measure_that_is_printed_is_taken_by_its_name(name, changes):
 
 def test_a_name_is_of_what_it_says():
     scene = load_scene("yi_diesel_free").with_(run__until="2 cycles")
-    result, columns = simulate(scene), columns_of(scene, series=False)
+    result, columns = simulate(scene), columns_of(scene)
     row, measures = row_of(result, None), result.measures()
 
     def value(words):
-        return reading_of(words, columns).of_row(row).value
+        return float(reading_of(words, columns).of(row)[0])
 
     pins = [joint.peak.value for joint in measures.joints if joint.joint == "crank pin"]
     assert [value(f"crank pin {k} [N]") for k in (1, 2, 3, 4)] == pins
@@ -102,7 +102,7 @@ def test_a_measure_that_is_zero_has_a_derivative_and_no_share():
 
 @pytest.mark.parametrize("name", ["yi_diesel", "steam_engine", "friction", "misfire"])
 def test_a_refusal_lists_the_names_that_are_printed(name):
-    columns = columns_of(load_scene(name), series=False)
+    columns = columns_of(load_scene(name))
     with pytest.raises(InputError) as caught:
         reading_of("crank pin peek", columns)
     hint, _, listed = str(caught.value).partition("There are ")
@@ -133,7 +133,7 @@ def test_a_refusal_lists_the_names_that_are_printed(name):
 )
 def test_a_lecture_or_its_formula_that_there_is_not_is_refused(words, said):
     with pytest.raises(InputError, match=re.escape(said)):
-        reading_of(words, columns_of(load_scene("yi_diesel"), series=False))
+        reading_of(words, columns_of(load_scene("yi_diesel")))
 
 
 def test_an_option_is_named_where_its_measure_is_unknown(tmp_path, monkeypatch):

@@ -173,7 +173,7 @@ def test_their_dataframes_have_errors_beside_values(short):
     largest = table.loc["largest crank pin force [N]"]
     assert largest["value"] == pin.peak.value
     assert largest["cycle angle [deg]"] == pytest.approx(math.degrees(pin.cycle_angle))
-    columns = columns_of(SHORT, series=False)
+    columns = columns_of(SHORT)
     assert len({reading_of(name, columns).column for name in table.index}) == len(table)
     table = state.to_dataframe()
     assert len(table) == len(state.readings)

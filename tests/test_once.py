@@ -79,5 +79,5 @@ def test_a_case_of_a_sweep_leaves_the_memory_when_it_is_done(no_collector, monke
     monkeypatch.setattr(block, "simulate", watched)
     scene = load_scene("v_twin")
     solved = block.solved(block.Job(scene, ("crank.inertia",), ((0.1,), (0.2,)), True))
-    assert solved.status.tolist() == [0, 0]
+    assert solved["status"].tolist() == [0, 0]
     assert [grid() for grid in seen] == [None, None]

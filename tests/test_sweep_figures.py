@@ -31,6 +31,14 @@ def test_one_knob_is_a_curve(grid):
     assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()] == ["1 %"]
 
 
+def test_what_each_cylinder_has_is_drawn_by_its_number(grid):
+    figure = sweep_figure(grid.isel({"rod_ratio": [0]}), "crank pin 1")
+    drawn = figure.axes[0].lines[0].get_ydata()
+    np.testing.assert_allclose(drawn, 1e-3 * grid["crank_pin_peak"][0, :, 0])
+    with pytest.raises(InputError, match="crank pin force, 2: there are 1; give a number from 1"):
+        sweep_figure(grid, "crank pin 2")
+
+
 def test_two_knobs_are_contours_with_the_line_of_the_limit(grid):
     figure = sweep_figure(grid, "side thrust by S1", "25 %")
     labels = [text.get_text() for text in figure.axes[0].texts]

@@ -94,13 +94,13 @@ def test_along_a_kink_it_goes_on_to_the_least(monkeypatch, most):
     A descent by quadratic models stops at once where it comes upon it."""
 
     class Valley:
-        def __init__(self, scene, names):
-            self.names = names
+        def __init__(self, scene, knobs, readings):
+            self.known, self.readings = {}, readings
 
-        def at(self, values, readings):
-            x, y = values
+        def at(self, x, y):
             both = 100.0 * abs(x - y * y) + (y - 0.9) ** 2, y
-            return tuple(Estimate(value, 0.0) for value in both[: len(readings)])
+            read = tuple(Estimate(value, 0.0) for value in both[: len(self.readings)])
+            return self.known.setdefault((x, y), read)
 
     monkeypatch.setattr(sys.modules["crankmbs.sweep.minimize"], "Asked", Valley)
     vary = {"piston.offset": "0..1 m", "crank.inertia": "0..1 kg m^2"}
@@ -144,10 +144,8 @@ def test_a_sensitivity_is_the_slope_at_a_root():
 
 
 def test_where_a_peak_bends_a_sensitivity_knows_nothing(monkeypatch):
-    value = SCENE.rod.length
-
-    def bent(_, values, __):
-        return (Estimate(abs(values[0] - value), 0.0),)
+    def bent(_, share):
+        return (Estimate(abs(share - 0.5) * 8e-3 * SCENE.rod.length, 0.0),)
 
     monkeypatch.setattr(Asked, "at", bent)
     found = sensitivity(SCENE, "rod.length", "fluctuation").derivative
@@ -228,7 +226,7 @@ def test_a_question_that_cannot_be_is_refused(call, said):
     ],
 )
 def test_measures_are_named_in_words(words, column):
-    assert reading_of(words, columns_of(SCENE, series=False)).column == column
+    assert reading_of(words, columns_of(SCENE)).column == column
 
 
 # ------------------------------------------------------------------------------- figures, commands

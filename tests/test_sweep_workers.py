@@ -1,6 +1,7 @@
 """A sweep is the same wherever it is computed, and what is finished survives what ends it."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -52,6 +53,13 @@ def test_two_processes_write_the_bytes_of_one(alone, tmp_path):
     sweep(SCENE, GRID, out=tmp_path / "two", executor=2)
     assert files(tmp_path / "two") == files(alone)
     assert dict(os.environ) == before
+
+
+def test_a_store_that_lacks_its_mark_alone_is_marked(alone, tmp_path):
+    shutil.copytree(alone, tmp_path / "two")
+    (tmp_path / "two" / ".zmetadata").unlink()
+    sweep(SCENE, GRID, out=tmp_path / "two", executor=2)
+    assert files(tmp_path / "two") == files(alone)
 
 
 def test_threads_write_the_bytes_of_one(alone, tmp_path):
@@ -360,5 +368,6 @@ def test_an_unreachable_scheduler_is_one_sentence(tmp_path):
 
 def test_few_blocks_are_computed_where_they_are_asked_for(monkeypatch):
     monkeypatch.setattr(workers, "_processes", None)
-    job = plan_of(SCENE, GRID, "measures").job
-    assert [number for number, _ in workers.computed(job, [2, 0], None)] == [2, 0]
+    plan = plan_of(SCENE, GRID, "measures")
+    few = [plan.boxes[2], plan.boxes[0]]
+    assert [box for box, _ in workers.computed(plan.job, few, None)] == few

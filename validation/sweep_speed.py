@@ -25,8 +25,7 @@ import numpy as np
 
 from crankmbs import Sample, load_scene, load_sweep, sweep
 from crankmbs.figures import png, sweep_figure
-from crankmbs.sweep.block import Block, Job, broken
-from crankmbs.sweep.columns import columns_of, dims_of
+from crankmbs.sweep.block import BROKEN, Block, Job, blank
 from crankmbs.sweep.plan import plan_of
 from crankmbs.sweep.run import fill
 from crankmbs.sweep.summary import summary
@@ -100,17 +99,16 @@ class _Numbers:
     """A block at once, of numbers that have been drawn before."""
 
     def __init__(self) -> None:
-        self._drawn: dict[str, np.ndarray[Any, Any]] = {}
+        self._drawn: Block = {}
 
     def __call__(self, job: Job) -> Block:
         count = len(job.values)
         if not self._drawn:
-            rng, sizes = np.random.default_rng(1), dims_of(job.scene, series=False)
-            for name, column in columns_of(job.scene, series=False).items():
-                shape = (count, *(len(sizes[dim]) for dim in column.dims))
-                self._drawn[name] = rng.random(shape)
-        rows = {name: values[:count] for name, values in self._drawn.items()}
-        return Block(rows, np.zeros(count, np.int8), ("reached its end",) * count)
+            rng, self._drawn = np.random.default_rng(1), blank(job, 0, "reached its end")
+            for values in self._drawn.values():
+                if values.dtype == np.float64:
+                    values[:] = rng.random(values.shape)
+        return {name: values[:count] for name, values in self._drawn.items()}
 
 
 def _peak() -> float:
@@ -174,7 +172,7 @@ def _busy(job: Job) -> Block:
     end = time.perf_counter() + _BLOCK
     while time.perf_counter() < end:
         pass
-    return broken(job, "busy")
+    return blank(job, BROKEN, "busy")
 
 
 def _pool() -> ProcessPoolExecutor:

@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from math import nan
 from typing import TYPE_CHECKING, Annotated
 
-from typer import Exit, Option, echo
+from typer import Option
 
 from crankmbs.cli.options import SceneName
 from crankmbs.cli.progress import progress
-from crankmbs.cli.sweep import varied, window_note
-from crankmbs.cli.text import cells, heading, table, with_unit
+from crankmbs.cli.sweep import answered, varied
+from crankmbs.cli.text import cells, table, with_unit
 from crankmbs.digits import digits
 from crankmbs.errors import InputError
 
@@ -60,9 +60,7 @@ def sensitivity(
             lacks = any(shares.status for shares in indices)
         else:
             report, lacks = _derivatives(loaded, vary, words), False
-    echo("\n\n".join(filter(None, [heading(path.stem, loaded.title), report, window_note(loaded)])))
-    if lacks:
-        raise Exit(3)
+    answered(path.stem, loaded, report, lacks=lacks)
 
 
 def _derivatives(scene: Scene, names: list[str], measures: list[str]) -> str:

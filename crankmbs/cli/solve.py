@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated
 
-from typer import Exit, Option, echo
+from typer import Option
 
 from crankmbs.cli.options import SceneName
 from crankmbs.cli.progress import progress
-from crankmbs.cli.sweep import varied, window_note
-from crankmbs.cli.text import cells, heading, table, with_unit
+from crankmbs.cli.sweep import answered, varied
+from crankmbs.cli.text import cells, table, with_unit
 from crankmbs.display import displayed
 from crankmbs.errors import InputError
 
@@ -56,9 +56,7 @@ def solve(
         else:
             lowest = minimize(loaded, ranges, str(least), subject_to or [])
             status, report = lowest.status, _minimum(lowest)
-    echo("\n\n".join(filter(None, [heading(path.stem, loaded.title), report, window_note(loaded)])))
-    if status != 0:
-        raise Exit(3)
+    answered(path.stem, loaded, report, lacks=status != 0)
 
 
 def _roots(answer: Solved) -> str:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from crankmbs.sweep.plan import Plan
     from crankmbs.sweep.summary import Bounds, Summary
 
-__all__ = ["sweep", "varied", "window_note"]
+__all__ = ["answered", "sweep", "varied"]
 
 _ENDED = {
     0: "reached their end",
@@ -68,9 +68,9 @@ def sweep(
     from crankmbs.sweep.summary import summary
 
     path = scene_path(scene)
-    cases_of = _cases(vary or [], cases, (sample, n, seed))
     with _as_options():
-        plan = plan_of(load_scene(path), cases_of(), keep)
+        over = _cases(vary or [], cases, (sample, n, seed))
+        plan = plan_of(load_scene(path), over, keep)
     if workers is not None and cluster is not None:
         raise InputError("--workers and --cluster both say where cases are computed; give one")
     _check_free(out, resume)
@@ -86,14 +86,18 @@ def sweep(
         raise Exit(3)
 
 
-def window_note(scene: Scene) -> str:
-    """Over what measures of cases are, where that need not be a settled motion."""
-    if scene.settles or scene.start is None:
-        return ""
-    return (
-        "each run as the scene has it, measured over the last cycle, settled or not; "
-        'until = "settled" in [run] asks for settled motions'
-    )
+def answered(name: str, scene: Scene, report: str, *, lacks: bool) -> None:
+    """Print a report of cases of a scene, and over what their measures are where that need not be a
+    settled motion; end with status 3 where it lacks something."""
+    parts = [heading(name, scene.title), report]
+    if scene.start is not None and not scene.settles:
+        parts.append(
+            "each run as the scene has it, measured over the last cycle, settled or not; "
+            'until = "settled" in [run] asks for settled motions'
+        )
+    echo("\n\n".join(parts))
+    if lacks:
+        raise Exit(3)
 
 
 def varied(texts: list[str]) -> dict[str, str]:
@@ -120,10 +124,8 @@ def varied(texts: list[str]) -> dict[str, str]:
     return ranges
 
 
-def _cases(
-    vary: list[str], cases: Path | None, drawn: tuple[str | None, int, int]
-) -> Callable[[], object]:
-    """A function that makes the cases from the options."""
+def _cases(vary: list[str], cases: Path | None, drawn: tuple[str | None, int, int]) -> object:
+    """What the options say is varied."""
     ranges, (method, n, seed) = varied(vary), drawn
     if (cases is None) == (not ranges):
         came = "neither" if cases is None else "both"
@@ -131,12 +133,12 @@ def _cases(
             f"--vary says what is varied, as {_RANGE}, or --cases a file of cases; {came} came"
         )
     if method is None:
-        return lambda: ranges or cases
+        return ranges or cases
     if cases is not None:
         raise InputError("--sample spreads cases over ranges of --vary; a file has its own")
     from crankmbs.sweep.sample import Sample
 
-    return lambda: Sample(ranges, n, method, seed)
+    return Sample(ranges, n, method, seed)
 
 
 def _fill(plan: Plan, out: Path, workers: int | None, cluster: str | None) -> None:
@@ -241,7 +243,7 @@ def _also_stored(plan: Plan, out: Path) -> str:
     """What the store has of each of several, and how to see it."""
     from crankmbs.sweep.columns import columns_of
 
-    dims = {dim for column in columns_of(plan.scene, series=False).values() for dim in column.dims}
+    dims = {dim for column in columns_of(plan.scene).values() for dim in column.dims}
     *most, last = (name for dim, name in _EACH.items() if dim in dims)
     each = f"{', '.join(most)} and {last}" if most else last
     return (
@@ -257,8 +259,8 @@ def _warnings(plan: Plan) -> list[str]:
 
     known = {text.partition(":")[0] for text in warnings(plan.scene)}
     lines: dict[str, None] = {}
-    for number in (0, plan.cases.count - 1):
-        (values,) = plan.cases.values(range(number, number + 1))
+    for end in (slice(1), slice(-1, None)):
+        (values,) = plan.cases.values([end] * len(plan.cases.shape))
         with suppress(CrankmbsError):  # what cannot be built is counted
             texts = warnings(scene_of(plan.scene, plan.cases.names, values))
             lines |= dict.fromkeys(t for t in texts if t.partition(":")[0] not in known)

@@ -97,7 +97,11 @@ def sweep_figure(
     """
     data = _varied(data)
     columns = {
-        str(name): Column(variable.attrs["units"], variable.attrs["long_name"])
+        str(name): Column(
+            variable.attrs["units"],
+            variable.attrs["long_name"],
+            {str(dim): () for dim in variable.dims if dim not in data["status"].dims},
+        )
         for name, variable in data.data_vars.items()
         if "units" in variable.attrs
     }
@@ -137,10 +141,10 @@ def _measure(over: str, columns: Mapping[str, Column]) -> Reading:
 
 def _of_cases(data: xr.Dataset, reading: Reading) -> tuple[xr.DataArray, float]:
     """A measure of every case and the largest of its errors."""
-    values, error = reading.of_sweep(data)
+    values, errors = reading.of(data)
     if not np.isfinite(values.values).any():
         raise InputError(f"{reading.words}: no case of this sweep has it")
-    return values, error
+    return values, float(errors.max())
 
 
 def _limit(text: str, reading: Reading) -> float:

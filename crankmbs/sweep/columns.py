@@ -4,6 +4,8 @@ where they are wanted the samples."""
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -18,55 +20,76 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Column", "Row", "columns_of", "dims_of", "row_of", "samples_of"]
+__all__ = ["Column", "Row", "columns_of", "row_of", "samples_of"]
 
 Row = dict[str, Array]
 _ERROR = "_error"
-_FORMULAS = ("lecture", "quantity")
 
 
 class Column(NamedTuple):
-    """units, long_name; dims : beyond the case."""
+    """units, long_name; dims : beyond the case, with their labels."""
 
     units: str
     long_name: str
-    dims: tuple[str, ...] = ()
+    dims: Mapping[str, Sequence[object]] = MappingProxyType({})
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of what one case has."""
+        return tuple(len(labels) for labels in self.dims.values())
 
 
-_LECTURE = Column("1", "largest deviation of the lecture, over the peak", _FORMULAS)
-
-
-def columns_of(scene: Scene, *, series: bool) -> dict[str, Column]:
+def columns_of(scene: Scene, *, series: bool = False) -> dict[str, Column]:
     """The columns of a sweep of a scene by name; the error of ``name`` is ``name_error``.
 
-    >>> "fluctuation_error" in columns_of(load_scene("propeller"), series=False)
+    Raises
+    ------
+    InputError : with series, a number of samples that shows only on the way
+
+    >>> "fluctuation_error" in columns_of(load_scene("propeller"))
     True
     """
+    labels = _labels(scene)
+
+    def over(*dims: str) -> dict[str, Sequence[object]]:
+        return {dim: labels[dim] for dim in dims if dim}
+
     columns = {
-        name: Column(about.units, about.words, (about.of,) if about.of else ())
+        name: Column(about.units, about.words, over(about.of))
         for name, about in names_of(scene).items()
     }
     if scene.fuel is None:  # the lectures know one pressure for all firings
-        columns["lecture_deviation"] = _LECTURE
+        words = "largest deviation of the lecture, over the peak"
+        columns["lecture_deviation"] = Column("1", words, over("lecture", "quantity"))
+    errors = {name: column.dims for name, column in columns.items()}
     if series:
-        columns |= _series(scene)
-    errors = {
+        labels["sample"] = range(samples_of(scene))
+        columns |= {
+            f"series_{name}": Column(about.units, about.long_name, over("sample", about.of))
+            for name, about in variables_of(scene).items()
+        }
+    columns |= {
         f"{name}{_ERROR}": Column(
-            column.units,
-            f"error of {column.long_name}",
-            tuple(
-                dim for dim in column.dims if not (dim == "sample" or name.startswith("series_"))
-            ),
+            column.units, f"error of {column.long_name}", errors.get(name, {})
         )
         for name, column in columns.items()
     }
     for joint, of in _joints(scene).items():
         angle = "cycle angle" if of == "cylinder" else "crank angle"
-        words, dims = joint.replace("_", " "), (of,) if of else ()
-        errors[f"{joint}_peak_angle"] = Column("rad", f"{angle} of the largest {words}", dims)
-    errors["energy_closure"] = Column("1", "largest energy residual over peak kinetic energy")
-    errors["relative_error"] = Column("1", "relative global error, estimated")
-    return columns | errors
+        words = f"{angle} of the largest {joint.replace('_', ' ')}"
+        columns[f"{joint}_peak_angle"] = Column("rad", words, over(of))
+    columns["energy_closure"] = Column("1", "largest energy residual over peak kinetic energy")
+    columns["relative_error"] = Column("1", "relative global error, estimated")
+    return columns
+
+
+def _labels(scene: Scene) -> dict[str, Sequence[object]]:
+    """The labels of the dimensions beyond the case."""
+    labels: dict[str, Sequence[object]] = {"cylinder": range(1, len(scene.cylinders) + 1)}
+    if scene.throws is not None:
+        labels["journal"] = range(1, len(scene.throws.rods) + 1)
+        labels["pin"] = labels["journal"][:-1]
+    return labels | {"lecture": list(LECTURES), "quantity": list(QUANTITIES)}
 
 
 def _joints(scene: Scene) -> dict[str, str]:
@@ -74,23 +97,7 @@ def _joints(scene: Scene) -> dict[str, str]:
     return {joint.joint.replace(" ", "_"): joint.of for joint in joints_of(scene)}
 
 
-def dims_of(scene: Scene, *, series: bool) -> dict[str, tuple[str, ...] | tuple[int, ...]]:
-    """The coordinates of the dimensions beyond the case."""
-    coordinates: dict[str, tuple[str, ...] | tuple[int, ...]] = {
-        "cylinder": tuple(range(1, len(scene.cylinders) + 1))
-    }
-    if scene.throws is not None:
-        coordinates["journal"] = tuple(range(1, len(scene.throws.rods) + 1))
-        if scene.throws.shared:
-            coordinates["pin"] = coordinates["journal"][:-1]
-    if scene.fuel is None:
-        coordinates |= {"lecture": tuple(LECTURES), "quantity": tuple(QUANTITIES)}
-    if series:
-        coordinates["sample"] = tuple(range(samples_of(scene)))
-    return coordinates
-
-
-def row_of(result: Result, samples: int | None) -> Row:
+def row_of(result: Result, samples: int | None = None) -> Row:
     """The columns of one run that it has, with series so many samples of them; what it has not is
     NaN.
 
@@ -137,13 +144,10 @@ def _measured(measures: Measures) -> Row:
         pairs = np.array(estimates, dtype=np.float64).T
         row[name], row[f"{name}{_ERROR}"] = pairs if names[name].of else pairs[:, 0]
     for joint, of in _joints(scene).items():
-        places = np.array([_angle(*each, scene.period) for each in angles[f"{joint}_peak"]])
-        row[f"{joint}_peak_angle"] = places if of else places[0]
+        peaks = angles[f"{joint}_peak"]
+        places = [crank % scene.period if cycle is None else cycle for crank, cycle in peaks]
+        row[f"{joint}_peak_angle"] = np.array(places if of else places[0])
     return row
-
-
-def _angle(crank: float, cycle: float | None, period: float) -> float:
-    return crank % period if cycle is None else cycle
 
 
 def _lectured(result: Result) -> Row:
@@ -159,15 +163,6 @@ def _lectured(result: Result) -> Row:
     return {"lecture_deviation": value, f"lecture_deviation{_ERROR}": error}
 
 
-def _series(scene: Scene) -> dict[str, Column]:
-    sampled = {"time": Column("s", "time", ("sample",))}
-    sampled["crank_angle"] = Column("rad", "crank angle", ("sample",))
-    for name, about in variables_of(scene).items():
-        dims = ("sample", about.of) if about.of else ("sample",)
-        sampled[name] = Column(about.units, about.long_name, dims)
-    return {f"series_{name}": column for name, column in sampled.items()}
-
-
 def _sampled(result: Result, most: int) -> Row:
     count, row = result.data.sizes["time"], {}
     if count > most:
@@ -175,9 +170,9 @@ def _sampled(result: Result, most: int) -> Row:
             f"run: series of all cases are kept in {most} samples, those of the scene that is "
             f"varied; {count} came; give that scene the longest run"
         )
-    for name in _series(result.scene):
-        variable = result.data[name.removeprefix("series_")]
+    for name in variables_of(result.scene):
+        variable = result.data[name]
         rest = np.full((most - count, *variable.shape[1:]), np.nan)
-        row[name] = np.concatenate([variable.values, rest])
-        row[f"{name}{_ERROR}"] = np.array(variable.attrs["error_estimate"])
+        row[f"series_{name}"] = np.concatenate([variable.values, rest])
+        row[f"series_{name}{_ERROR}"] = np.array(variable.attrs["error_estimate"])
     return row

@@ -17,6 +17,8 @@ from typing import Any
 __all__ = ["fingerprint"]
 
 _INSTALLED = {"site-packages", "dist-packages"}
+_OF_CODE = ["co_code", "co_names", "co_varnames", "co_freevars"]
+_OF_CODE += ["co_argcount", "co_kwonlyargcount", "co_flags"]
 _WRAPPED = ("__wrapped__", "py_func", "fget")  # of what functools, numba and property make
 
 
@@ -68,14 +70,7 @@ class _Pickler(pickle.Pickler):
 def _parts(value: Any) -> list[Any] | None:
     """What identifies a value; None where pickle keeps all of it."""
     if isinstance(value, CodeType):
-        names = [value.co_names, value.co_varnames, value.co_freevars]
-        counts = [value.co_argcount, value.co_kwonlyargcount, value.co_flags]
-        return [
-            value.co_code,
-            [_ordered(constant) for constant in value.co_consts],
-            *names,
-            *counts,
-        ]
+        return [*(getattr(value, name) for name in _OF_CODE), *map(_ordered, value.co_consts)]
     if isinstance(value, ModuleType):
         return _module(value.__name__)
     if isinstance(value, type | FunctionType):

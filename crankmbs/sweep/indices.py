@@ -14,11 +14,10 @@ from crankmbs.errors import InputError, shown
 from crankmbs.measures import Estimate
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.scene.scene import Scene, check_scene
-from crankmbs.sweep.cases import Listed
-from crankmbs.sweep.columns import columns_of
+from crankmbs.sweep.cases import Cases
 from crankmbs.sweep.knobs import Interval, Knob, interval_of
 from crankmbs.sweep.plan import Plan
-from crankmbs.sweep.reading import Reading, check_free, reading_of
+from crankmbs.sweep.reading import Reading, free_reading_of
 from crankmbs.sweep.run import run_in_memory
 from crankmbs.sweep.sample import Sample
 
@@ -108,13 +107,10 @@ def sobol_indices(
             f"n must be a power of two from 2 on, or Sobol's points are not balanced; {n} came, "
             f"{2 ** n.bit_length()} is the next"
         )
-    columns = columns_of(scene, series=False)
-    words = [measures] if isinstance(measures, str) else list(measures)
-    readings = [reading_of(text, columns) for text in words]
     knobs = tuple(interval_of(scene, *item) for item in vary.items())
-    for reading in readings:
-        check_free(scene, reading, [knob.name for knob in knobs])
-    plan = Plan(scene, Listed(_design(knobs, n, seed)), series=False)
+    words, names = [measures] if isinstance(measures, str) else measures, [k.name for k in knobs]
+    readings = [free_reading_of(scene, text, names) for text in words]
+    plan = Plan(scene, Cases(_design(knobs, n, seed), grid=False), series=False)
     data = run_in_memory(plan, executor)
     return tuple(_indices_of(plan, data, reading, n, seed) for reading in readings)
 
@@ -132,13 +128,13 @@ def _design(knobs: tuple[Interval, ...], n: int, seed: int) -> tuple[Knob, ...]:
 
     stats.sobol_indices(func=recorded, n=n, dists=[uniform] * len(knobs), rng=seed)
     columns = np.concatenate(designs, axis=1)
-    return tuple(knob.taken(knob.at(column)) for knob, column in zip(knobs, columns, strict=True))
+    return tuple(knob.taken(column) for knob, column in zip(knobs, columns, strict=True))
 
 
 def _indices_of(plan: Plan, data: xr.Dataset, reading: Reading, n: int, seed: int) -> SobolIndices:
     names, count = plan.cases.names, plan.cases.count
-    read, numerical = reading.of_sweep(data)
-    values = np.where(data["status"].values == 0, read.values, np.nan)
+    read, errors = reading.of(data)
+    values = np.where(data["status"] == 0, read, np.nan)
     why = _why_not(plan, data, reading, values)
     if why:
         nothing = (Estimate(math.nan, math.nan),) * len(names)
@@ -146,7 +142,7 @@ def _indices_of(plan: Plan, data: xr.Dataset, reading: Reading, n: int, seed: in
     deviation = float(np.std(values[: 2 * n]))
     estimates, rng = _indices(values, n, np.arange(n)), np.random.default_rng(seed)
     resampled = [_indices(values, n, rng.integers(n, size=n)) for _ in range(_RESAMPLES)]
-    error = _CONFIDENCE * np.std(resampled, axis=0, ddof=1) + _OWN * numerical / deviation
+    error = _CONFIDENCE * np.std(resampled, axis=0, ddof=1) + _OWN * float(errors.max()) / deviation
     first, total = (
         tuple(Estimate(*pair) for pair in zip(*order, strict=True))
         for order in zip(estimates.tolist(), error.tolist(), strict=True)
@@ -175,9 +171,9 @@ def _why_not(plan: Plan, data: xr.Dataset, reading: Reading, values: Array) -> s
         same = np.ptp(values) <= 1e-12 * np.max(np.abs(values))
         return f"{reading.words} is the same in all {len(values)} runs" if same else ""
     first = int(missing[0])
-    (at,) = plan.cases.values(range(first, first + 1))
-    knobs = zip(plan.cases.names, at, plan.cases.units, strict=True)
-    place = ", ".join(f"{name} = {value:.6g} {unit}".rstrip() for name, value, unit in knobs)
+    place = ", ".join(
+        f"{knob.name} = {knob.values[first]:.6g} {knob.units}".rstrip() for knob in plan.cases.knobs
+    )
     return (
         f"{missing.size} of {len(values)} runs have no {reading.words}, and indices need all; the "
         f"first at {place}: {data['message'].values[first]}; narrow the ranges"

@@ -5,14 +5,15 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from numbers import Real
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crankmbs.errors import InputError, shown
-from crankmbs.numerics.arrays import Array, Index
+from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.function import named
 from crankmbs.scene.change import changed, field_at
 from crankmbs.scene.scene import Scene
@@ -22,7 +23,7 @@ from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.scene.units import quantity, unit_of
 from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.pressure_table import TABLE_KNOBS, TABLE_VALUES, table_at
-from crankmbs.sweep.reading import is_measure
+from crankmbs.sweep.reading import reading_of
 
 __all__ = ["DERIVED", "Interval", "Knob", "interval_of", "knob_of", "number_at"]
 
@@ -31,7 +32,7 @@ DERIVED = {"rod_ratio": None, "settled_speed": "angular speed", **TABLE_KNOBS}
 
 _NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _RANGE = re.compile(rf"\s*({_NUMBER})\s*\.\.\s*({_NUMBER})\s*([^:]*?)\s*(:.*)?")
-_PLAIN = re.compile(rf"\s*({_NUMBER})\s*")
+_AMOUNT = re.compile(rf"\s*({_NUMBER})\s*(.*)")
 _MOST = 100_000  # values of one knob
 _GRAMMAR = 'write values as "0.05..0.5 kg m^2:40", "0.14..0.2 m:25:log", or a list "100 mm, 120 mm"'
 
@@ -43,24 +44,18 @@ class Knob:
     name : as `Scene.with_` takes it with dots, or of `DERIVED`
     units : of numbers; empty for words
     values : shape (n,), what a scene takes: floats in SI units, whole numbers, or objects
-    numbers : whether all that it is ever set to are numbers
     """
 
     name: str
     units: str
-    values: Array
-    numbers: bool = True
-
-    def at(self, places: slice | Index) -> Knob:
-        """The knob at some of its values."""
-        return replace(self, values=self.values[places])
+    values: NDArray[Any]
 
     @property
-    def labels(self) -> Array:
+    def labels(self) -> NDArray[Any]:
         """The values as a coordinate: numbers, or what tells words, tables and parts apart."""
-        if self.numbers:
-            return np.asarray(self.values, dtype=np.float64)
-        return np.array([_label(value) for value in self.values], dtype=object)
+        if self.values.dtype != object:
+            return self.values.astype(np.float64)
+        return np.array([_label(value) for value in self.values], np.dtypes.StringDType())
 
 
 class Interval(NamedTuple):
@@ -70,24 +65,22 @@ class Interval(NamedTuple):
     units: str
     low: float
     high: float
-    log: bool
-    whole: bool
+    log: bool = False
+    whole: bool = False
 
-    def at(self, share: Array) -> Array:
+    def at(self, share: Array | float) -> Array:
         """The values at shares of the way, shape (n,); on a logarithmic way where asked."""
         if self.log:
             return np.asarray(self.low * (self.high / self.low) ** share)
         if self.whole:
-            return np.asarray(np.minimum(self.low + np.floor(share * self._count), self.high))
+            count = self.high - self.low + 1.0
+            return np.asarray(np.minimum(self.low + np.floor(share * count), self.high))
         return np.asarray(self.low + share * (self.high - self.low))
 
-    def taken(self, values: Array) -> Knob:
-        """The knob at some of these values."""
+    def taken(self, share: Array) -> Knob:
+        """The knob at these values."""
+        values = self.at(share)
         return Knob(self.name, self.units, values.astype(np.int64) if self.whole else values)
-
-    @property
-    def _count(self) -> float:
-        return self.high - self.low + 1.0
 
 
 class _Kind(NamedTuple):
@@ -116,8 +109,8 @@ def knob_of(scene: Scene, name: str, values: object, most: int = _MOST) -> Knob:
     """
     kind = _kind(scene, name)
     if isinstance(values, str):
-        if _RANGE.fullmatch(values):
-            return _spaced(kind, values)
+        if match := _RANGE.fullmatch(values):
+            return _spaced(kind, match)
         items: Sequence[object] = [item.strip() for item in values.split(",")]
     elif isinstance(values, Sequence | np.ndarray):
         items = values.tolist() if isinstance(values, np.ndarray) else values
@@ -125,7 +118,7 @@ def knob_of(scene: Scene, name: str, values: object, most: int = _MOST) -> Knob:
         raise InputError(f"{name}: must be a text or a sequence of values; {shown(values)} came")
     if not 1 <= len(items) <= most:
         raise InputError(f"{name}: must have from 1 to {most} values; {len(items)} came")
-    return _knob(kind.name, kind.unit, [_value(scene, kind, item) for item in items])
+    return _knob(kind, [_value(scene, kind, item) for item in items])
 
 
 def interval_of(scene: Scene, name: str, text: object) -> Interval:
@@ -149,23 +142,23 @@ def interval_of(scene: Scene, name: str, text: object) -> Interval:
     return _interval(kind, match, match[4] is not None)
 
 
-def number_at(scene: Scene, name: str) -> tuple[Knob, float]:
-    """A knob, and the number that the scene has there.
+def number_at(scene: Scene, name: str) -> Knob:
+    """A knob at the number that the scene has there.
 
     Raises
     ------
     InputError : no such name, or no number there
 
     >>> from crankmbs import load_scene
-    >>> number_at(load_scene("propeller"), "crank.radius")[1]
-    0.046
+    >>> number_at(load_scene("propeller"), "crank.radius").values
+    array([0.046])
     """
     kind = _kind(scene, name)
     derived = {"rod_ratio": scene.crank.radius / scene.rod.length, **TABLE_VALUES}
     value = derived.get(kind.name) if kind.name in DERIVED else _at(scene, kind.name)
     if kind.whole or isinstance(value, bool) or not isinstance(value, float):
         raise InputError(f"{name}: must be a number that a little can be added to; it is no such")
-    return Knob(kind.name, kind.unit, np.empty(0)), value
+    return _knob(kind, [value])
 
 
 def _kind(scene: Scene, name: str) -> _Kind:
@@ -177,13 +170,14 @@ def _kind(scene: Scene, name: str) -> _Kind:
     try:
         place = field_at(scene, name)
     except InputError as error:
-        if is_measure(name, columns_of(scene, series=False)):
-            raise InputError(
-                f"{name}: is a measure, which follows from a case; vary what it depends on, such "
-                f'as crank.inertia, and draw over it: crankmbs plot SWEEP --over "{name}"'
-            ) from None
-        near = did_you_mean(name, list(DERIVED))
-        raise InputError(f"{error}{near}" if near else str(error)) from None
+        try:
+            reading_of(name, columns_of(scene))
+        except InputError:
+            raise InputError(f"{error}{did_you_mean(name, list(DERIVED))}") from None
+        raise InputError(
+            f"{name}: is a measure, which follows from a case; vary what it depends on, such "
+            f'as crank.inertia, and draw over it: crankmbs plot SWEEP --over "{name}"'
+        ) from None
     if place is None:
         return _Kind(dotted, None, False)
     whole = place[0].__pydantic_fields__[place[1]].annotation is int
@@ -198,37 +192,38 @@ def _interval(kind: _Kind, match: re.Match[str], log: bool) -> Interval:
     return Interval(kind.name, kind.unit, low, high, log, kind.whole)
 
 
-def _spaced(kind: _Kind, text: str) -> Knob:
-    match = _RANGE.fullmatch(text)
-    assert match is not None
+def _spaced(kind: _Kind, match: re.Match[str]) -> Knob:
     count, _, way = (match[4] or ":")[1:].partition(":")
     number = int(count) if count.isdecimal() and len(count) < 9 else 0
     if not 2 <= number <= _MOST or way not in ("", "log"):
         raise InputError(
             f"{kind.name}: a range needs how many values it has, from 2 to {_MOST}, then perhaps "
-            f"log; {shown(text)} came; {_GRAMMAR}"
+            f"log; {shown(match[0])} came; {_GRAMMAR}"
         )
     if (
         kind.dimension is None and match[3] and kind.name not in DERIVED
     ):  # of a unit that only the field knows
         space = np.geomspace if way else np.linspace
         numbers = space(float(match[1]), float(match[2]), number).tolist()
-        return _knob(kind.name, "", [f"{value:.12g} {match[3]}" for value in numbers])
+        return _knob(kind, [f"{value:.12g} {match[3]}" for value in numbers])
     between = _interval(kind, match, way == "log")
     if kind.whole:
         values = np.round(np.linspace(between.low, between.high, number))
-        return between.taken(np.unique(values))
-    values = between.at(np.linspace(0.0, 1.0, number))
-    values[-1] = between.high
-    return between.taken(values)
+        return _knob(kind, np.unique(values).astype(np.int64).tolist())
+    knob = between.taken(np.linspace(0.0, 1.0, number))
+    knob.values[-1] = between.high
+    return knob
 
 
 def _number(kind: _Kind, number: str, unit: str) -> float:
-    """A bound in SI units; only numbers without a dimension, and bare SI numbers, have no unit."""
-    if unit and kind.dimension is None:
+    """A number in SI units; only those without a dimension, and bare SI numbers, have no unit."""
+    if kind.dimension is not None and (unit or kind.dimension in ("angle", "angular speed")):
+        try:
+            return quantity(f"{number} {unit}", kind.dimension)
+        except InputError as error:
+            raise InputError(f"{kind.name}: {error}") from None
+    if unit:
         raise InputError(f"{kind.name}: takes numbers without a unit; {shown(unit)} came")
-    if unit or kind.dimension in ("angle", "angular speed"):
-        return _quantity(kind, f"{number} {unit}")
     value = float(number)
     if not math.isfinite(value) or (kind.whole and not value.is_integer()):
         rule = "whole numbers" if kind.whole else "finite numbers"
@@ -236,25 +231,14 @@ def _number(kind: _Kind, number: str, unit: str) -> float:
     return value
 
 
-def _quantity(kind: _Kind, text: str) -> float:
-    assert kind.dimension is not None
-    try:
-        return quantity(text, kind.dimension)
-    except InputError as error:
-        raise InputError(f"{kind.name}: {error}") from None
-
-
 def _value(scene: Scene, kind: _Kind, item: object) -> object:
     """One value as a scene takes it: a file is read here, once for all cases."""
     if not isinstance(item, str):
-        whole = kind.whole and isinstance(item, float) and item.is_integer()
-        return int(item) if whole else item  # type: ignore[call-overload]
-    plain = _PLAIN.fullmatch(item)
-    if plain:
-        number = _number(kind, plain[1], "")
+        return int(item) if kind.whole and isinstance(item, float) and item.is_integer() else item
+    amount = _AMOUNT.fullmatch(item)
+    if amount and (kind.dimension is not None or not amount[2]):
+        number = _number(kind, amount[1], amount[2])
         return int(number) if kind.whole else number
-    if kind.dimension is not None and not item[:1].isalpha():
-        return _quantity(kind, item)
     if kind.name in DERIVED:
         raise InputError(f"{kind.name}: {shown(item)} is no number; {_GRAMMAR}")
     return _at(changed(scene, {kind.name: item}), kind.name)
@@ -266,13 +250,10 @@ def _at(scene: object, name: str) -> object:
     return scene
 
 
-def _knob(name: str, units: str, values: list[object]) -> Knob:
-    for kind, dtype in ((int, np.int64), (float, np.float64)):
-        if all(type(value) is kind for value in values):
-            return Knob(name, units, np.array(values, dtype=dtype))
-    column = np.empty(len(values), dtype=object)
-    column[:] = values
-    return Knob(name, units, column, all(isinstance(value, Real) for value in values))
+def _knob(kind: _Kind, values: list[object]) -> Knob:
+    if all(isinstance(value, Real) for value in values):
+        return Knob(kind.name, kind.unit, np.array(values))
+    return Knob(kind.name, kind.unit, np.fromiter(values, dtype=object))
 
 
 def _label(value: object) -> str:

@@ -8,16 +8,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.optimize import Bounds, NonlinearConstraint
+from numpy.typing import ArrayLike
+from scipy.optimize import NonlinearConstraint
 from scipy.optimize import minimize as polished
 
 from crankmbs.errors import InputError
 from crankmbs.measures import Estimate
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene, check_scene
-from crankmbs.sweep.columns import columns_of
-from crankmbs.sweep.knobs import Interval, interval_of
-from crankmbs.sweep.reading import Reading, check_free, reading_of
+from crankmbs.sweep.knobs import interval_of
+from crankmbs.sweep.reading import Reading, free_reading_of
 from crankmbs.sweep.sample import Sample
 from crankmbs.sweep.solve import Asked, asked_of
 
@@ -29,6 +29,8 @@ _AGAIN, _CLEARLY = 4, 1e-5  # simplexes at most; of the measure: one that gained
 _FIRST, _LAST = 0.05, 1e-6  # steps of the polish, shares of a range
 _AT = 1e-5  # of a range: so near its end a knob has ended there
 _SLACK = 1e-6  # of a bound: so far a condition may be missed
+
+Point = Sequence[float]
 
 
 @dataclass(frozen=True)
@@ -98,73 +100,77 @@ def minimize(
     knobs = tuple(interval_of(scene, *item) for item in drawn.vary.items())
     if not knobs or any(knob.whole for knob in knobs):
         raise InputError("vary: needs ranges of numbers that are not whole; sweep compares others")
-    reading = reading_of(measure, columns_of(scene, series=False))
-    conditions = [asked_of(scene, text, "<= >= < >") for text in subject_to]
-    for each in (reading, *(condition[0] for condition in conditions)):
-        check_free(scene, each, [knob.name for knob in knobs])
-    return _Descent(scene, knobs, reading, conditions).minimum()
+    names = [knob.name for knob in knobs]
+    reading = free_reading_of(scene, measure, names)
+    conditions = [asked_of(scene, names, text, "<= >= < >") for text in subject_to]
+    asked = Asked(scene, knobs, (reading, *(condition[0] for condition in conditions)))
+    bounds = [(sign, bound) for _, sign, bound in conditions]
+    best, status, message = _Descent(asked, names, bounds).ended()
+    reached, *others = asked.at(*best)
+    pairs = zip(conditions, others, strict=True)
+    return Minimum(
+        values={knob.name: float(knob.at(x)) for knob, x in zip(knobs, best, strict=True)},
+        units={knob.name: knob.units for knob in knobs},
+        measure=reading,
+        reached=reached,
+        conditions=tuple(Condition(*wanted, estimate) for wanted, estimate in pairs),
+        evaluations=len(asked.known),
+        status=status,
+        message=message,
+    )
 
 
 class _Descent:
-    """A measure and its conditions over shares of the ranges; each point is computed once."""
+    """A measure and its conditions, each a sign and a bound, over shares of the ranges."""
 
-    def __init__(
-        self,
-        scene: Scene,
-        knobs: tuple[Interval, ...],
-        reading: Reading,
-        conditions: list[tuple[Reading, str, float]],
-    ) -> None:
-        self._asked, self._knobs = Asked(scene, tuple(knob.name for knob in knobs)), knobs
-        self._reading, self._conditions = reading, conditions
-        self._known: dict[tuple[float, ...], tuple[Estimate, ...]] = {}
+    def __init__(self, asked: Asked, names: list[str], bounds: list[tuple[str, float]]) -> None:
+        self._asked, self._names, self._bounds = asked, names, bounds
 
-    def minimum(self) -> Minimum:
-        count = len(self._knobs)
+    def ended(self) -> tuple[Point, int, str]:
+        """The best point, status and message."""
+        count = len(self._names)
         drawn = 2 ** math.ceil(math.log2(_POINTS * count))
-        points = Sample(dict.fromkeys(self._asked.names, ""), drawn).points(range(drawn))
-        values = np.array([self._least(point) for point in points])
-        excess = np.array([self._excess(point).max(initial=0.0) for point in points])
-        runs = np.isfinite(values)
-        if not runs.any():
-            return self._answer(points[0], 1, "no case in the ranges has the measure")
-        excess[~runs] = math.inf
-        start = points[np.lexsort((values, excess))[0]]
-        scale = float(np.nanmax(np.abs(values))) or 1.0
+        points = Sample(dict.fromkeys(self._names, ""), drawn).points().tolist()
+        best = min(points, key=self._rank)
+        if self._rank(best)[1] == math.inf:
+            return best, 1, "no case in the ranges has the measure"
+        scale = max(abs(x) for _, x in map(self._rank, points) if x < math.inf) or 1.0
         constraint = NonlinearConstraint(self._excess, -np.inf, 0.0)
-        options: Any = {"maxfev": _MOST * count}
-        options |= {"initial_tr_radius": _FIRST, "final_tr_radius": _LAST}
-        ended = polished(  # type: ignore[call-overload]
-            lambda share: self._least(share) / scale,
-            start,
+        options: Any = {"initial_tr_radius": _FIRST, "final_tr_radius": _LAST}
+        polished(  # type: ignore[call-overload]
+            lambda point: self._estimates(point)[0].value / scale,
+            best,
             method="COBYQA",
-            bounds=Bounds(np.zeros(count), np.ones(count)),
-            constraints=[constraint] if self._conditions else [],
-            options=options,
+            bounds=[(0.0, 1.0)] * count,
+            constraints=[constraint] if self._bounds else [],
+            options=options | {"maxfev": _MOST * count},
         )
-        best = self._best(np.clip(ended.x, 0.0, 1.0))
-        if self._excess(best).max(initial=0.0) > _SLACK:
-            return self._answer(best, 1, "nothing in the ranges fulfils the conditions")
+        best = self._best()
+        if self._rank(best)[0] > 0.0:
+            return best, 1, "nothing in the ranges fulfils the conditions"
         for _ in range(_AGAIN):
-            before, best = best, self._down_kinks(best)
-            if self._least(before) - self._least(best) <= _CLEARLY * scale:
+            before, best = best, self._down_kinks(np.array(best))
+            if self._rank(before)[1] - self._rank(best)[1] <= _CLEARLY * scale:
                 break
-        return self._answer(best, 0, f"found{self._at_bounds(best)}")
+        ends = [n for n, x in zip(self._names, best, strict=True) if min(x, 1.0 - x) <= _AT]
+        bound = f", at a bound of {' and '.join(ends)}: beyond it there may be less"
+        return best, 0, f"found{bound if ends else ''}"
 
-    def _down_kinks(self, start: Array) -> Array:
+    def _down_kinks(self, start: Array) -> Point:
         """The best point known after Nelder and Mead's simplex went on from one, within the
         conditions: a peak that is now one, now another has a valley whose floor is a kink, in which
         a quadratic model stops."""
         inward = np.where(start < 0.5, _FIRST, -_FIRST)
 
-        def walled(share: Array) -> float:
-            return math.inf if self._excess(share).max(initial=0.0) > _SLACK else self._least(share)
+        def walled(point: Array) -> float:
+            excess, least = self._rank(point)
+            return math.inf if excess > 0.0 else least
 
         polished(
             walled,
             start,
             method="Nelder-Mead",
-            bounds=Bounds(np.zeros_like(start), np.ones_like(start)),
+            bounds=[(0.0, 1.0)] * len(start),
             options={
                 "initial_simplex": np.vstack([start, start + np.diag(inward)]),
                 "maxfev": _MOST * len(start),
@@ -172,65 +178,26 @@ class _Descent:
                 "fatol": math.inf,
             },
         )
-        return self._best(start)
+        return self._best()
 
-    def _at_bounds(self, share: Array) -> str:
-        """The knobs that ended at a bound of their range, in words."""
-        ends = np.minimum(share, 1.0 - share) <= _AT
-        names = [name for name, ended in zip(self._asked.names, ends, strict=True) if ended]
-        return (
-            f", at a bound of {' and '.join(names)}: beyond it there may be less" if names else ""
-        )
+    def _best(self) -> Point:
+        return min(self._asked.known, key=self._rank)
 
-    def _best(self, end: Array) -> Array:
-        """The best point known that fulfils the conditions; without one the end of the polish."""
-        self._least(end)
-        fit = [
-            np.array(share)
-            for share, (estimate, *_) in self._known.items()
-            if math.isfinite(estimate.value)
-            and self._excess(np.array(share)).max(initial=0.0) <= _SLACK
-        ]
-        return min(fit, key=self._least, default=end)
+    def _rank(self, point: ArrayLike) -> tuple[float, float]:
+        """By how much the conditions are missed, then the measure; infinite where it has none."""
+        excess = float(self._excess(point).max(initial=0.0))
+        least = self._estimates(point)[0].value
+        if math.isnan(excess + least):
+            return math.inf, math.inf
+        return excess if excess > _SLACK else 0.0, least
 
-    def _answer(self, share: Array, status: int, message: str) -> Minimum:
-        reached, *rest = self._estimates(share)
-        values = self._values(share)
-        knobs = self._knobs
-        return Minimum(
-            values={knob.name: value for knob, value in zip(knobs, values, strict=True)},
-            units={knob.name: knob.units for knob in knobs},
-            measure=self._reading,
-            reached=reached,
-            conditions=tuple(
-                Condition(*wanted, estimate)
-                for wanted, estimate in zip(self._conditions, rest, strict=True)
-            ),
-            evaluations=len(self._known),
-            status=status,
-            message=message,
-        )
-
-    def _least(self, share: Array) -> float:
-        return self._estimates(share)[0].value
-
-    def _excess(self, share: Array) -> Array:
+    def _excess(self, point: ArrayLike) -> Array:
         """How far each condition is from being fulfilled, over its bound; at most 0 where it is."""
         excess = []
-        for (_, sign, bound), estimate in zip(
-            self._conditions, self._estimates(share)[1:], strict=True
-        ):
+        for (sign, bound), estimate in zip(self._bounds, self._estimates(point)[1:], strict=True):
             beyond = (estimate.value - bound) / (abs(bound) or 1.0)
             excess.append(beyond if sign.startswith("<") else -beyond)
         return np.array(excess)
 
-    def _estimates(self, share: Array) -> tuple[Estimate, ...]:
-        key = tuple(np.clip(share, 0.0, 1.0).tolist())
-        if key not in self._known:
-            readings = (self._reading, *(reading for reading, _, _ in self._conditions))
-            self._known[key] = self._asked.at(self._values(np.array(key)), readings)
-        return self._known[key]
-
-    def _values(self, share: Array) -> tuple[float, ...]:
-        pairs = zip(self._knobs, share.tolist(), strict=True)
-        return tuple(float(knob.at(np.array(part))) for knob, part in pairs)
+    def _estimates(self, point: ArrayLike) -> tuple[Estimate, ...]:
+        return self._asked.at(*np.clip(point, 0.0, 1.0).tolist())

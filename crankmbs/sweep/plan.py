@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import metadata
-from itertools import chain
+from itertools import chain, product
 from math import ceil, prod
 
-import numpy as np
 from pydantic import TypeAdapter
 
 from crankmbs.batch.serves import loads_of
@@ -21,11 +18,14 @@ from crankmbs.scene.python_load import Load
 from crankmbs.scene.scene import Scene, check_scene
 from crankmbs.sweep.block import Job, block_size
 from crankmbs.sweep.cases import Cases, cases_of
-from crankmbs.sweep.columns import columns_of, dims_of
+from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.fingerprint import fingerprint
 from crankmbs.sweep.scenes import scene_of
 
-__all__ = ["Plan", "check_possible", "plan_of"]
+__all__ = ["Box", "Plan", "check_possible", "plan_of"]
+
+Box = tuple[slice, ...]
+"""The places of a block's cases along each dimension."""
 
 _KEEP = ("measures", "series")
 _SCENE = TypeAdapter(Scene)
@@ -50,39 +50,24 @@ class Plan:
             size = max(size // length, 1)
         return tuple(shape)
 
-    @property
-    def blocks(self) -> int:
-        """How many blocks there are."""
-        return prod(self._grid)
+    @cached_property
+    def boxes(self) -> list[Box]:
+        """Of every block, in the order of its cases."""
+        along = [
+            [slice(first, min(first + chunk, length)) for first in range(0, length, chunk)]
+            for chunk, length in zip(self.chunks, self.cases.shape, strict=True)
+        ]
+        return list(product(*along))
 
-    def region(self, number: int) -> tuple[slice, ...]:
-        """Where the cases of a block lie; blocks are counted from 0."""
-        places = zip(
-            np.unravel_index(number, self._grid), self.chunks, self.cases.shape, strict=True
-        )
-        return tuple(slice(int(k) * n, min((int(k) + 1) * n, most)) for k, n, most in places)
-
-    def rows(self, number: int) -> range:
-        """The cases of a block, all of them counted from 0."""
-        region = self.region(number)
-        first = int(np.ravel_multi_index([places.start for places in region], self.cases.shape))
-        return range(first, first + prod(places.stop - places.start for places in region))
-
-    @property
-    def _grid(self) -> tuple[int, ...]:
-        """Blocks along each dimension."""
-        return tuple(ceil(n / k) for n, k in zip(self.cases.shape, self.chunks, strict=True))
-
-    def job(self, number: int) -> Job:
+    def job(self, box: Box) -> Job:
         """A block as a worker takes it."""
-        return Job(self.scene, self.cases.names, self.cases.values(self.rows(number)), self.series)
+        return Job(self.scene, self.cases.names, self.cases.values(box), self.series)
 
     @property
     def bytes(self) -> int:
         """What all its numbers take [B]."""
-        sizes = {dim: len(at) for dim, at in dims_of(self.scene, series=self.series).items()}
         columns = columns_of(self.scene, series=self.series).values()
-        return 8 * self.cases.count * sum(prod(sizes[d] for d in column.dims) for column in columns)
+        return 8 * self.cases.count * sum(prod(column.shape) for column in columns)
 
     @cached_property
     def identity(self) -> dict[str, str]:
@@ -90,10 +75,9 @@ class Plan:
         which nothing identifies, agrees with nothing."""
         functions = [load.function for load in self.scene.torque if isinstance(load, Load)]
         functions += [force.function for force in self.scene.force if isinstance(force, Force)]
-        scene = json.dumps(_SCENE.dump_python(self.scene, mode="json"), sort_keys=True)
         return {
             "version": metadata.version("crankmbs"),
-            "scene": hashlib.sha256(scene.encode()).hexdigest(),
+            "scene": fingerprint(_SCENE.dump_python(self.scene, mode="json")),
             "functions": fingerprint(functions),
             "cases": self.cases.fingerprint,
             "keep": _KEEP[self.series],
@@ -107,14 +91,14 @@ def plan_of(scene: Scene, vary: object, keep: str) -> Plan:
     ------
     InputError : no scene, what cannot be varied, or nothing that can be kept
 
-    >>> plan_of(load_scene("propeller"), {"rod.length": "0.14..0.2 m:3"}, "measures").blocks
+    >>> len(plan_of(load_scene("propeller"), {"rod.length": "0.14..0.2 m:3"}, "measures").boxes)
     1
     """
     check_scene(scene)
     if keep not in _KEEP:
         raise InputError(f'keep must be "measures" or "series"; {shown(keep)} came')
     plan = Plan(scene, cases_of(scene, vary), keep == "series")
-    dims_of(scene, series=plan.series)  # whether the number of samples is known
+    columns_of(scene, series=plan.series)  # whether the number of samples is known
     return plan
 
 
@@ -127,12 +111,11 @@ def check_possible(plan: Plan) -> None:
     """
     reasons: Counter[str] = Counter()
     first: tuple[object, ...] = ()
-    every = chain.from_iterable(plan.job(number).values for number in range(plan.blocks))
-    for values in every:
+    for values in chain.from_iterable(plan.job(box).values for box in plan.boxes):
         try:
             scene_of(plan.scene, plan.cases.names, values)
         except CrankmbsError as error:
-            first = values if not reasons else first
+            first = first or values
             reasons[str(error)] += 1
     if reasons:
         reason, place = next(iter(reasons)), zip(plan.cases.names, first, strict=True)

@@ -4,30 +4,25 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
-
-import numpy as np
+from typing import Any, NamedTuple
 
 from crankmbs.compare import LECTURES, QUANTITIES, short_name
 from crankmbs.errors import InputError, shown
-from crankmbs.measures import Estimate
+from crankmbs.scene.scene import Scene
 from crankmbs.scene.sentences import there_are
-from crankmbs.scene.units import quantity
-from crankmbs.sweep.columns import Column, Row
+from crankmbs.scene.units import quantity, unit_of
+from crankmbs.sweep.columns import Column, columns_of
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from crankmbs.scene.scene import Scene
-
-__all__ = ["Reading", "amount_of", "check_free", "is_measure", "reading_of"]
+__all__ = ["Reading", "amount_of", "free_reading_of", "reading_of"]
 
 _DEVIATION = "lecture_deviation"
 _LECTURES = {
     key.partition(" ")[0].lower(): name for name in LECTURES for key in (name, short_name(name))
 }  # "untruncated", "yi", and by key of the bibliography "s1"
-_DIMENSIONS = {"N": "force", "N m": "torque", "Pa": "pressure", "N/m^2": "pressure", "J": "torque"}
-_DIMENSIONS |= {"rad": "angle", "rad/s": "angular speed", "m/s": "speed", "W": "power"}
+_DIMENSIONS = {
+    unit_of(name): name
+    for name in ("force", "torque", "pressure", "angle", "angular speed", "speed", "power")
+} | {"N/m^2": "pressure", "J": "torque"}
 _SHARE = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(%?)\s*")
 _OF_SPEED = ("fluctuation", "mean_speed", "highest_speed", "lowest_speed")
 _LARGEST = {"peak", "largest", "max"}
@@ -54,38 +49,27 @@ class Reading(NamedTuple):
             return f"largest error of {self.quantity} by {short_name(self.lecture)}, over its peak"
         return f"{self.about.long_name}{f', {self.number}' if self.number else ''}"
 
-    def of_row(self, row: Row) -> Estimate:
-        """It in one case, with its error; NaN where the case has none."""
-        value, error = row.get(self.column), row.get(f"{self.column}_error")
-        if value is None or error is None:
-            return Estimate(np.nan, np.nan)
+    def of(self, columns: Mapping[Any, Any]) -> tuple[Any, Any]:
+        """It in every case, and its errors, from columns as a block or a dataset has them.
+
+        Raises
+        ------
+        InputError : there is none of this number
+        """
+        value, error = columns[self.column], columns[f"{self.column}_error"]
         if self.lecture:
             at = list(LECTURES).index(self.lecture), list(QUANTITIES).index(self.quantity)
-            return Estimate(float(value[at]), float(error[at]))
+            return value[(..., *at)], error[(..., *at)]
         if self.number is not None:
-            self._check(len(value))
-            value, error = value[self.number - 1], error[self.number - 1]
-        return Estimate(self.sign * float(np.max(value)), float(np.max(error)))
-
-    def of_sweep(self, data: xr.Dataset) -> tuple[xr.DataArray, float]:
-        """It in every case, and the largest of its errors."""
-        value, error = data[self.column], data[f"{self.column}_error"]
-        if self.lecture:
-            at = {"lecture": self.lecture, "quantity": self.quantity}
-            value, error = value.sel(at), error.sel(at)
-        elif many := [of for of in ("cylinder", "journal", "pin") if of in value.dims]:
-            if self.number is not None:
-                self._check(data.sizes[many[0]])
-                one = {many[0]: self.number - 1}
-                value, error = value.isel(one, drop=True), error.isel(one, drop=True)
-            else:
-                value = value.max(many)
-        return self.sign * value, float(error.max())
-
-    def _check(self, count: int) -> None:
-        assert self.number is not None
-        if not 1 <= self.number <= count:
-            raise InputError(f"{self.words}: there are {count}; give a number from 1 to {count}")
+            count = value.shape[-1]
+            if not 1 <= self.number <= count:
+                raise InputError(
+                    f"{self.words}: there are {count}; give a number from 1 to {count}"
+                )
+            value, error = value[..., self.number - 1], error[..., self.number - 1]
+        elif self.about.dims:
+            value, error = value.max(axis=-1), error.max(axis=-1)
+        return self.sign * value, error
 
 
 def reading_of(text: str, columns: Mapping[str, Column]) -> Reading:
@@ -98,7 +82,7 @@ def reading_of(text: str, columns: Mapping[str, Column]) -> Reading:
     InputError : no such measure
 
     >>> from crankmbs.sweep.columns import columns_of
-    >>> columns = columns_of(load_scene("propeller"), series=False)
+    >>> columns = columns_of(load_scene("propeller"))
     >>> reading_of("peak main bearing force", columns).column
     'main_bearing_peak'
     """
@@ -146,20 +130,6 @@ def _by_lecture(text: str, words: str, columns: Mapping[str, Column]) -> Reading
     return Reading(_DEVIATION, columns[_DEVIATION], name, quantity)
 
 
-def is_measure(text: str, columns: Mapping[str, Column]) -> bool:
-    """Whether `reading_of` knows it.
-
-    >>> from crankmbs.sweep.columns import columns_of
-    >>> is_measure("rod ratio", columns_of(load_scene("propeller"), series=False))
-    False
-    """
-    try:
-        reading_of(text, columns)
-    except InputError:
-        return False
-    return True
-
-
 def _key(words: str) -> frozenset[str]:
     """The words that tell measures apart, in any order."""
     plain = _WINDOW.sub("", _UNIT.sub("", words.lower())).replace("|", " ").replace(",", " ")
@@ -180,15 +150,18 @@ def _keys(name: str, long_name: str) -> set[frozenset[str]]:
     return keys
 
 
-def check_free(scene: Scene, reading: Reading, names: Sequence[str]) -> None:
-    """Refuse what a prescribed speed says itself, where nothing that is varied changes it.
+def free_reading_of(scene: Scene, text: str, names: Sequence[str]) -> Reading:
+    """What is read of the cases of a scene in which these knobs are varied.
 
     Raises
     ------
-    InputError : what is asked for, why it does not change, and the way out
+    InputError : no such measure, or one that a prescribed speed says itself, where nothing that is
+        varied changes it
 
-    >>> check_free(load_scene("propeller"), Reading("fluctuation", Column("1", "")), ["rod.length"])
+    >>> free_reading_of(load_scene("propeller"), "fluctuation", ["rod.length"]).column
+    'fluctuation'
     """
+    reading = reading_of(text, columns_of(scene))
     of_speed = reading.column in _OF_SPEED and not any(name.startswith("motion") for name in names)
     if scene.motion is not None and of_speed:
         raise InputError(
@@ -196,6 +169,7 @@ def check_free(scene: Scene, reading: Reading, names: Sequence[str]) -> None:
             "what is varied does not change it; free the crank with [start] and its loads, "
             "[[torque]], as crankmbs flywheel does by itself, or vary motion.speed"
         )
+    return reading
 
 
 def amount_of(text: str, reading: Reading) -> float:

@@ -9,8 +9,6 @@ from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from crankmbs.scene.scene import Scene
 from crankmbs.sweep.plan import Plan, check_possible, plan_of
 from crankmbs.sweep.store import load_sweep, opened
@@ -98,10 +96,8 @@ def fill(
     """
     check_executor(executor)
     with opened(path, plan) as store:
-        missing = np.flatnonzero(~store.done).tolist()
-        report(plan.cases.count - sum(len(plan.rows(number)) for number in missing))
-        with closing(computed(plan.job, missing, executor)) as blocks:
-            for number, block in blocks:
-                store.write(number, block)
-                report(len(block.message))
-        store.finish()
+        report(store.done)
+        with closing(computed(plan.job, store.missing, executor)) as blocks:
+            for box, block in blocks:
+                store.write(box, block)
+                report(len(block["status"]))

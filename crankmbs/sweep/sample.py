@@ -1,19 +1,14 @@
-"""A sample: points spread evenly over a unit cube, drawn block by block where the method can."""
+"""A sample: points spread evenly over a unit cube."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from crankmbs.errors import InputError, shown
 from crankmbs.numerics.arrays import Array
-
-if TYPE_CHECKING:
-    from scipy.stats import qmc
 
 __all__ = ["Sample"]
 
@@ -46,34 +41,16 @@ class Sample:
         if self.method not in _METHODS:
             raise InputError(f'method must be "sobol" or "latin"; {shown(self.method)} came')
 
-    def points(self, rows: range) -> Array:
-        """Some successive points of the n in the unit cube, shape (len(rows), knobs).
+    def points(self) -> Array:
+        """The n points in the unit cube, shape (n, knobs).
 
-        >>> Sample({"rod.length": "0.14..0.2 m"}, 4, "latin").points(range(1, 4)).shape
-        (3, 1)
+        >>> Sample({"rod.length": "0.14..0.2 m"}, 4, "latin").points().shape
+        (4, 1)
         """
-        if self.method == "latin":
-            return self._hypercube[rows.start : rows.stop]
-        sequence = self._sequence
-        if sequence.num_generated > rows.start:
-            sequence.reset()
-        if sequence.num_generated < rows.start:
-            sequence.fast_forward(rows.start - sequence.num_generated)
-        if sequence.num_generated == 0:  # SciPy warns of a first draw of no power of two
-            first = sequence.random(1)
-            rest = [sequence.random(len(rows) - 1)] if len(rows) > 1 else []
-            return np.concatenate([first, *rest])
-        return np.asarray(sequence.random(len(rows)))
-
-    @cached_property
-    def _sequence(self) -> qmc.Sobol:
         from scipy.stats import qmc  # a third of a second: only where cases are drawn
 
-        return qmc.Sobol(len(self.vary), rng=self.seed)
-
-    @cached_property
-    def _hypercube(self) -> Array:
-        """All points: the strata of each knob are one permutation."""
-        from scipy.stats import qmc
-
-        return np.asarray(qmc.LatinHypercube(len(self.vary), rng=self.seed).random(self.n))
+        if self.method == "latin":
+            return np.asarray(qmc.LatinHypercube(len(self.vary), rng=self.seed).random(self.n))
+        sequence = qmc.Sobol(len(self.vary), rng=self.seed)
+        whole = (self.n - 1).bit_length()  # SciPy warns of a number that is no power of two
+        return np.asarray(sequence.random_base2(whole)[: self.n])

@@ -38,9 +38,10 @@ def scene_of(scene: Scene, names: Sequence[str], values: Sequence[object]) -> Sc
     knobs = dict(zip(names, values, strict=True))
     plain = {name: value for name, value in knobs.items() if name not in DERIVED}
     new = changed(scene, plain)
-    if "rod_ratio" in knobs:
-        new = dataclasses.replace(new, rod=_stretched(new, knobs["rod_ratio"]))
-    if table := {name: _number(name, knobs) for name in TABLE_KNOBS if name in knobs}:
+    derived = {name: _number(name, knobs[name]) for name in DERIVED if name in knobs}
+    if "rod_ratio" in derived:
+        new = dataclasses.replace(new, rod=_stretched(new, derived["rod_ratio"]))
+    if table := {name: derived[name] for name in TABLE_KNOBS if name in derived}:
         new = corrected(new, table)
     new = carried_over(new, scene)
     if len(new.cylinders) != len(scene.cylinders):
@@ -48,13 +49,12 @@ def scene_of(scene: Scene, names: Sequence[str], values: Sequence[object]) -> Sc
             f"layout: a sweep keeps the number of cylinders, {len(scene.cylinders)}; "
             f"{len(new.cylinders)} came"
         )
-    if "settled_speed" not in knobs:
+    if "settled_speed" not in derived:
         return new
-    return rebalanced(new, _number("settled_speed", knobs), mean_speed_together)
+    return rebalanced(new, derived["settled_speed"], mean_speed_together)
 
 
-def _stretched(scene: Scene, _ratio: object) -> Rod:
-    ratio = _number("rod_ratio", {"rod_ratio": _ratio})
+def _stretched(scene: Scene, ratio: float) -> Rod:
     if not 0.0 < ratio <= 1.0:
         raise InputError(f"rod_ratio: must be above 0 and at most 1; {ratio:g} came")
     if scene.unlike:
@@ -66,8 +66,7 @@ def _stretched(scene: Scene, _ratio: object) -> Rod:
     return dataclasses.replace(rod, length=length, center_of_mass=center, inertia=inertia)
 
 
-def _number(name: str, knobs: dict[str, object]) -> float:
-    value = knobs[name]
+def _number(name: str, value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise InputError(f"{name}: must be a number in SI units; {shown(value)} came")
     return float(value)

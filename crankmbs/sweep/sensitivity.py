@@ -10,10 +10,9 @@ import numpy as np
 from crankmbs.errors import InputError
 from crankmbs.measures import Estimate
 from crankmbs.scene.scene import Scene, check_scene
-from crankmbs.sweep.columns import columns_of
-from crankmbs.sweep.knobs import number_at
+from crankmbs.sweep.knobs import Interval, number_at
 from crankmbs.sweep.pressure_table import step_from_zero
-from crankmbs.sweep.reading import Reading, check_free, reading_of
+from crankmbs.sweep.reading import Reading, free_reading_of
 from crankmbs.sweep.solve import Asked
 
 __all__ = ["Sensitivity", "sensitivity"]
@@ -67,14 +66,15 @@ def sensitivity(scene: Scene, name: str, measure: str) -> Sensitivity:
     -0.993
     """
     check_scene(scene)
-    knob, value = number_at(scene, name)
-    reading = reading_of(measure, columns_of(scene, series=False))
-    check_free(scene, reading, [knob.name])
+    knob = number_at(scene, name)
+    value = float(knob.values[0])
+    reading = free_reading_of(scene, measure, [knob.name])
     step = step_from_zero(scene, knob.name) or _STEP * abs(value)
     if step == 0.0:
         raise InputError(f"{name}: is 0 in this scene, and steps are a share of it; give it a size")
-    question = Asked(scene, (knob.name,))
-    cases = [question.at((value + k * step,), (reading,))[0] for k in (-2, -1, 0, 1, 2)]
+    ends = value - 2.0 * step, value + 2.0 * step
+    asked = Asked(scene, (Interval(knob.name, knob.units, *ends),), (reading,))
+    cases = [asked.at(share)[0] for share in (0.0, 0.25, 0.5, 0.75, 1.0)]
     far_low, low, middle, high, far_high = (case.value for case in cases)
     near, far = (high - low) / (2.0 * step), (far_high - far_low) / (4.0 * step)
     derivative = (4.0 * near - far) / 3.0

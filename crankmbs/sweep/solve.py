@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,9 +15,8 @@ from crankmbs.measures import Estimate
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene, check_scene
 from crankmbs.sweep.block import Job, solved
-from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.knobs import Interval, interval_of
-from crankmbs.sweep.reading import Reading, amount_of, check_free, reading_of
+from crankmbs.sweep.reading import Reading, amount_of, free_reading_of
 
 __all__ = ["Asked", "Root", "Solved", "asked_of", "solve"]
 
@@ -61,32 +61,43 @@ class Solved:
     message: str
 
 
-@dataclass(frozen=True)
 class Asked:
-    """One number of each case of a scene, asked for value by value."""
+    """What is read of single cases of a scene, each computed once.
 
-    scene: Scene
-    names: tuple[str, ...]
+    known : shares of the ranges of the knobs -> what was read
+    """
 
-    def at(self, values: tuple[float, ...], readings: tuple[Reading, ...]) -> tuple[Estimate, ...]:
+    def __init__(
+        self, scene: Scene, knobs: tuple[Interval, ...], readings: tuple[Reading, ...]
+    ) -> None:
+        self._scene, self._knobs, self._readings = scene, knobs, readings
+        self.known: dict[tuple[float, ...], tuple[Estimate, ...]] = {}
+
+    def at(self, *shares: float) -> tuple[Estimate, ...]:
         """What is read of a case; NaN where it does not reach its end."""
-        block = solved(Job(self.scene, self.names, (values,), False))
-        if block.status[0] != 0:
-            return (Estimate(math.nan, math.nan),) * len(readings)
-        row = {name: column[0] for name, column in block.rows.items()}
-        return tuple(reading.of_row(row) for reading in readings)
+        if shares not in self.known:
+            values = tuple(float(knob.at(x)) for knob, x in zip(self._knobs, shares, strict=True))
+            block = solved(Job(self._scene, tuple(knob.name for knob in self._knobs), [values]))
+            pairs = [reading.of(block) for reading in self._readings]
+            if block["status"][0] != 0:
+                pairs = [([math.nan], [math.nan])] * len(pairs)
+            self.known[shares] = tuple(Estimate(float(x[0]), float(dx[0])) for x, dx in pairs)
+        return self.known[shares]
 
 
-def asked_of(scene: Scene, text: str, signs: str) -> tuple[Reading, str, float]:
+def asked_of(
+    scene: Scene, names: Sequence[str], text: str, signs: str
+) -> tuple[Reading, str, float]:
     """A condition such as "fluctuation = 1 %": what is read, the sign, and how much, in SI units.
 
+    names : of what is varied
     signs : those that may stand there
 
     Raises
     ------
     InputError : no such condition
 
-    >>> asked_of(load_scene("propeller"), "fluctuation <= 1 %", "<= >=")[1:]
+    >>> asked_of(load_scene("propeller"), ["rod.length"], "fluctuation <= 1 %", "<= >=")[1:]
     ('<=', 0.01)
     """
     match = _EQUATION.fullmatch(text.strip()) if isinstance(text, str) else None
@@ -94,7 +105,7 @@ def asked_of(scene: Scene, text: str, signs: str) -> tuple[Reading, str, float]:
         raise InputError(
             f'{shown(text)} is no condition: write one such as "fluctuation {signs.split()[0]} 1 %"'
         )
-    reading = reading_of(match[1], columns_of(scene, series=False))
+    reading = free_reading_of(scene, match[1], names)
     try:
         return reading, match[2], amount_of(match[3], reading)
     except InputError as error:
@@ -137,69 +148,57 @@ def solve(scene: Scene, vary: dict[str, str], wanted: str) -> Solved:
     knob = interval_of(scene, name, text)
     if knob.whole:
         raise InputError(f"{knob.name}: is a whole number, and sweep finds the best of those")
-    reading, _, amount = asked_of(scene, wanted, "=")
-    check_free(scene, reading, [knob.name])
-    return _Search(Asked(scene, (knob.name,)), knob, reading, amount).solved()
+    reading, _, amount = asked_of(scene, [knob.name], wanted, "=")
+    return _Search(Asked(scene, (knob,), (reading,)), knob, amount).solved(reading)
 
 
 class _Search:
     """Where a measure of one knob is what is wanted; shares of the way stand for its values."""
 
-    def __init__(self, asked: Asked, knob: Interval, reading: Reading, wanted: float) -> None:
-        self._asked, self._knob = asked, knob
-        self._reading, self._wanted = reading, wanted
-        self._known: dict[float, Estimate] = {}
+    def __init__(self, asked: Asked, knob: Interval, wanted: float) -> None:
+        self._asked, self._knob, self._wanted = asked, knob, wanted
 
-    def solved(self) -> Solved:
+    def solved(self, reading: Reading) -> Solved:
         shares = self._points()
-        estimates = [self._estimate(share) for share in shares.tolist()]
-        off = np.array([estimate.value for estimate in estimates]) - self._wanted
+        off = np.array([self._off(share) for share in shares.tolist()])
         roots = [self._root(share) for share in shares[off == 0.0].tolist()]
         for k in np.flatnonzero(off[:-1] * off[1:] < 0.0).tolist():
             root = self._polished(float(shares[k]), float(shares[k + 1]))
             roots += [] if root is None else [root]
-        roots.sort(key=lambda root: root.value.value)
-        status, message, nearest = 0, f"{len(roots)} found", None
+        nearest, message = None, f"{len(roots)} found"
         if not roots:
-            status, message = 1, "no value in the range gives this"
+            message = "no case in the range has the measure"
             if np.isfinite(off).any():
-                k = int(np.nanargmin(np.abs(off)))
-                value = Estimate(self._value(float(shares[k])), 0.0)
-                nearest = Root(value, estimates[k])
-            else:
-                message = "no case in the range has the measure"
-        scanned = np.array([self._knob.at(shares), off + self._wanted])
-        knob = self._knob
+                share = float(shares[np.nanargmin(np.abs(off))])
+                nearest = Root(Estimate(float(self._knob.at(share)), 0.0), self._reached(share))
+                message = "no value in the range gives this"
         return Solved(
-            knob=knob.name,
-            units=knob.units,
-            measure=self._reading,
+            knob=self._knob.name,
+            units=self._knob.units,
+            measure=reading,
             wanted=self._wanted,
-            roots=tuple(roots),
+            roots=tuple(sorted(roots, key=lambda root: root.value.value)),
             nearest=nearest,
-            scanned=scanned,
-            status=status,
+            scanned=np.array([self._knob.at(shares), off + self._wanted]),
+            status=0 if roots else 1,
             message=message,
         )
 
     def _points(self) -> Array:
         """Evenly spaced shares, and those where the measure turns towards what is wanted."""
         shares = np.linspace(0.0, 1.0, _POINTS)
-        off = np.array([self._estimate(share).value for share in shares.tolist()]) - self._wanted
+        off = np.array([self._off(share) for share in shares.tolist()])
         inner, before, after = off[1:-1], off[:-2], off[2:]
         nearest = np.abs(inner) < np.minimum(np.abs(before), np.abs(after))
         turns = 1 + np.flatnonzero(nearest & (inner * before > 0.0) & (inner * after > 0.0))
-        more = [
-            self._turn(float(shares[k - 1]), float(shares[k + 1]), float(np.sign(off[k])))
-            for k in turns.tolist()
-        ]
+        more = [self._turn(shares[k - 1], shares[k + 1], np.sign(off[k])) for k in turns.tolist()]
         return np.unique([*shares, *more])
 
     def _turn(self, low: float, high: float, side: float) -> float:
         """Where between two shares the measure, on one side of what is wanted, is nearest to it or
         farthest beyond it."""
         turn = minimize_scalar(
-            lambda share: np.nan_to_num(side * self._estimate(share).value, nan=math.inf),
+            lambda share: np.nan_to_num(side * self._off(share), nan=math.inf),
             bounds=(low, high),
             method="bounded",
             options={"xatol": _TURN},
@@ -211,35 +210,23 @@ class _Search:
         the measure jumps across what is wanted."""
         try:
             share = float(brentq(self._off, low, high, xtol=_CLOSE, rtol=1e-14))
-        except _Missing:
+        except ValueError:  # of a NaN
             return None
         root = self._root(share)
         rise = abs(self._off(high) - self._off(low)) / (high - low)
-        jumps = abs(root.reached.value - self._wanted) > 1e3 * (_CLOSE * rise + root.reached.error)
+        jumps = abs(self._off(share)) > 1e3 * (_CLOSE * rise + root.reached.error)
         return None if jumps else root
 
     def _root(self, share: float) -> Root:
-        step = 1e-4 if share < 0.5 else -1e-4
-        here, near = self._estimate(share), self._estimate(share + step)
-        slope = abs(near.value - here.value) / abs(self._value(share + step) - self._value(share))
-        span = _CLOSE * abs(self._knob.high - self._knob.low)
-        error = here.error / slope + span if slope > 0.0 else math.inf
-        return Root(Estimate(self._value(share), error), here)
+        beside = share + (1e-4 if share < 0.5 else -1e-4)
+        value, near = float(self._knob.at(share)), float(self._knob.at(beside))
+        slope = abs(self._off(beside) - self._off(share)) / abs(near - value)
+        span, reached = _CLOSE * abs(self._knob.high - self._knob.low), self._reached(share)
+        error = reached.error / slope + span if slope > 0.0 else math.inf
+        return Root(Estimate(value, error), reached)
 
     def _off(self, share: float) -> float:
-        off = self._estimate(share).value - self._wanted
-        if math.isnan(off):
-            raise _Missing
-        return off
+        return self._reached(share).value - self._wanted
 
-    def _estimate(self, share: float) -> Estimate:
-        if share not in self._known:
-            (self._known[share],) = self._asked.at((self._value(share),), (self._reading,))
-        return self._known[share]
-
-    def _value(self, share: float) -> float:
-        return float(self._knob.at(np.array(share)))
-
-
-class _Missing(Exception):
-    """A case that has no measure."""
+    def _reached(self, share: float) -> Estimate:
+        return self._asked.at(share)[0]

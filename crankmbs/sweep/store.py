@@ -17,10 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.errors import InputError, OutputError
-from crankmbs.numerics.arrays import Array
 from crankmbs.sweep.block import Block
-from crankmbs.sweep.columns import columns_of, dims_of
-from crankmbs.sweep.plan import Plan
+from crankmbs.sweep.columns import Column, columns_of
+from crankmbs.sweep.plan import Box, Plan
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -45,46 +44,41 @@ _OTHER = {
 
 
 class Store:
-    """A store open for writing; done : whether each block is finished."""
+    """A store open for writing.
+
+    done : how many cases are there; missing : the boxes of the blocks that are not
+    """
 
     def __init__(self, path: Path, plan: Plan, group: zarr.Group) -> None:
-        self._path, self._plan = path, plan
+        self._path, self._of = path, _measures(plan)
         self._arrays: dict[str, Any] = dict(group.arrays())
-        self.done = _finished(group).ravel()
+        self.done = int(np.count_nonzero(self._arrays["status"][:] != _NOT_RUN))
+        blocks = zip(plan.boxes, _finished(group).flat, strict=True)
+        self.missing = [box for box, finished in blocks if not finished]
 
-    def write(self, number: int, block: Block) -> None:
+    def write(self, box: Box, block: Block) -> None:
         """Write a block, its status last.
 
         Raises
         ------
         OutputError : the device is full, or the folder cannot be written
         """
-        values: dict[str, Array] = {"message": np.array(block.message, dtype=object)}
-        for name, columns in _measures(self._plan).items():
-            values[name] = np.stack([block.rows[column] for column in columns], axis=1)
-        region = self._plan.region(number)
-        box = tuple(places.stop - places.start for places in region)
+        values = {
+            name: np.stack([block[column] for column in columns], axis=1)
+            for name, columns in self._of.items()
+        }
+        values |= {name: block[name] for name in ("message", "status")}
+        sizes = tuple(part.stop - part.start for part in box)
         with _writing(self._path):
-            for name, of_cases in (values | {"status": block.status}).items():
-                self._arrays[name][region] = of_cases.reshape(*box, *of_cases.shape[1:])
-
-    def finish(self) -> None:
-        """Mark the store as complete.
-
-        Raises
-        ------
-        OutputError : it cannot be written
-        """
-        import zarr
-
-        with _writing(self._path):
-            zarr.consolidate_metadata(str(self._path), zarr_format=2)
+            for name, of_cases in values.items():
+                self._arrays[name][box] = of_cases.reshape(*sizes, *of_cases.shape[1:])
 
 
 @contextmanager
 def opened(path: Path, plan: Plan) -> Iterator[Store]:
-    """The store of a plan for writing: a new one, or an unfinished one that is resumed. A store
-    that has no finished block is removed where what is done with it raises.
+    """The store of a plan for writing: a new one, or an unfinished one that is resumed. It is
+    marked as complete behind what is done with it; where that raises, a store that has no finished
+    block is removed.
 
     Raises
     ------
@@ -104,6 +98,8 @@ def opened(path: Path, plan: Plan) -> Iterator[Store]:
             for half in path.rglob("*.partial"):  # of a write that was killed
                 half.unlink()
         yield Store(path, plan, group)
+        with _writing(path):
+            zarr.consolidate_metadata(str(path), zarr_format=2)
     except BaseException:
         if not any(path.glob("status/[0-9]*")):
             shutil.rmtree(path, ignore_errors=True)
@@ -161,10 +157,9 @@ def load_sweep(path: str | Path) -> xr.Dataset:
             f"{folder}: {done.sum()} of {done.size} blocks are finished; crankmbs sweep --resume "
             "computes the others"
         )
-    data = xr.open_dataset(folder, engine="zarr", decode_cf=False)
+    data = xr.open_dataset(folder, engine="zarr", mask_and_scale=False, decode_times=False)
     for each in data.variables.values():
         each.attrs.pop("_FillValue", None)
-    data = data.set_coords(data.attrs.pop("coordinates").split())
     variables = {name: data[name] for name in ("message", "status")}
     for name in map(str, set(data).difference(variables)):
         array, over = data[name], name.removesuffix("s")
@@ -192,12 +187,12 @@ def _finished(group: zarr.Group) -> NDArray[np.bool_]:
     return np.asarray(status[:][tuple(slice(None, None, n) for n in status.chunks)] != _NOT_RUN)
 
 
-def _measures(plan: Plan) -> dict[str, list[str]]:
+def _measures(plan: Plan) -> dict[str, dict[str, Column]]:
     """The arrays of measures by name, and the columns in each."""
-    groups: dict[str, list[str]] = {}
+    arrays: dict[str, dict[str, Column]] = {}
     for name, column in columns_of(plan.scene, series=plan.series).items():
-        groups.setdefault("_".join((*column.dims, "measures")), []).append(name)
-    return groups
+        arrays.setdefault("_".join((*column.dims, "measures")), {})[name] = column
+    return arrays
 
 
 def _lay_out(group: zarr.Group, plan: Plan) -> None:
@@ -205,9 +200,7 @@ def _lay_out(group: zarr.Group, plan: Plan) -> None:
     a case is run."""
     about: Any = {"title": plan.scene.title, "identity": plan.identity}
     group.attrs.put(about | {"coordinates": " ".join(plan.cases.names)})
-    cases, columns, arrays = plan.cases, columns_of(plan.scene, series=plan.series), _measures(plan)
-    dims = dims_of(plan.scene, series=plan.series)
-    dims |= {name.removesuffix("s"): tuple(names) for name, names in arrays.items()}
+    cases, arrays, labels = plan.cases, _measures(plan), dict[str, Sequence[object]]()
 
     def add(name: str, over: Sequence[str], about: dict[str, Any], **array: Any) -> None:
         about = {"_ARRAY_DIMENSIONS": list(over), **about}  # by which xarray knows them
@@ -216,26 +209,24 @@ def _lay_out(group: zarr.Group, plan: Plan) -> None:
     def add_empty(
         name: str, dtype: Any, nothing: object, over: Sequence[str], about: dict[str, Any]
     ) -> None:
-        sizes = tuple(len(dims[dim]) for dim in over)
+        sizes = tuple(len(labels[dim]) for dim in over)
         shape, chunks = (*cases.shape, *sizes), (*plan.chunks, *sizes)
         over = (*cases.dims, *over)
         add(name, over, about, shape=shape, chunks=chunks, dtype=dtype, fill_value=nothing)
 
-    for name, at in dims.items():
-        add(name, [name], {}, data=_storable(np.array(at)), fill_value=None)
-    for knob in cases.levels:
-        over = [knob.name] if knob.name in cases.dims else cases.dims
-        add(knob.name, over, {"units": knob.units}, data=_storable(knob.labels), fill_value=None)
-    for name, names in arrays.items():
-        labels = {label: [getattr(columns[column], label) for column in names] for label in _LABELS}
-        over = name.removesuffix("s"), *columns[names[0]].dims
-        add_empty(name, "f8", np.nan, over, labels)
+    for knob in cases.knobs:
+        over = [knob.name] if cases.grid else cases.dims
+        add(knob.name, over, {"units": knob.units}, data=knob.labels, fill_value=None)
+    for name, columns in arrays.items():
+        one, *_ = columns.values()
+        labels |= {name.removesuffix("s"): list(columns), **one.dims}
+        about = {label: [getattr(each, label) for each in columns.values()] for label in _LABELS}
+        add_empty(name, "f8", np.nan, (name.removesuffix("s"), *one.dims), about)
+    for name, at in labels.items():
+        dtype = np.dtypes.StringDType() if isinstance(at[0], str) else None
+        add(name, [name], {}, data=np.array(at, dtype), fill_value=None)
     add_empty("message", str, "", (), {})
     add_empty("status", "i1", _NOT_RUN, (), {"long_name": _STATUS})
-
-
-def _storable(labels: Array) -> Array:
-    return labels.astype(np.dtypes.StringDType()) if labels.dtype.kind in "OU" else labels
 
 
 @contextmanager

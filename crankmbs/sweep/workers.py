@@ -17,13 +17,18 @@ from concurrent.futures import (
     wait,
 )
 from contextlib import contextmanager
+from dataclasses import replace
 from itertools import islice
+from typing import TypeVar
+
+import numpy as np
 
 from crankmbs.errors import InputError, OutputError, shown
-from crankmbs.sweep.block import Block, Job, broken, joined, solved
+from crankmbs.sweep.block import BROKEN, Block, Job, blank, solved
 
 __all__ = ["Workers", "check_executor", "computed"]
 
+T = TypeVar("T")
 _THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 _LARGEST = 512
 _FEW = 12  # blocks: they are done before processes have started
@@ -51,29 +56,29 @@ def check_executor(executor: object) -> None:
 
 
 def computed(
-    job: Callable[[int], Job], numbers: list[int], executor: Executor | int | None
-) -> Generator[tuple[int, Block]]:
-    """The blocks with these numbers as they are finished: by an executor, or by so many workers; 1
-    is the calling process alone, and None takes it for few blocks, else a process for each
-    processor.
+    job: Callable[[T], Job], places: list[T], executor: Executor | int | None
+) -> Generator[tuple[T, Block]]:
+    """The blocks at these places as they are finished: by an executor, or by so many workers; 1 is
+    the calling process alone, and None takes it for few blocks, else a process for each processor.
 
     Raises
     ------
     InputError : workers that cannot start, or a scene that cannot be sent to them
     OutputError : an executor that was given broke
     """
-    count = 1 if executor is None and len(numbers) < _FEW else executor or os.cpu_count() or 1
-    if not isinstance(count, Executor):
-        count = min(count, len(numbers))
-    if count == 1:
-        for number in numbers:
-            yield number, solved(job(number))
+    if executor is None:
+        executor = 1 if len(places) < _FEW else os.cpu_count() or 1
+    if isinstance(executor, int):
+        executor = min(executor, len(places))
+    if not places or executor == 1:
+        for place in places:
+            yield place, solved(job(place))
         return
-    if not isinstance(count, Executor) or isinstance(count, ProcessPoolExecutor):
-        _check_sendable(job(numbers[0]))
-    workers = Workers(count)
+    if isinstance(executor, int | ProcessPoolExecutor):
+        _check_sendable(job(places[0]))
+    workers = Workers(executor)
     try:
-        yield from workers.computed(job, numbers)
+        yield from workers.computed(job, places)
     finally:
         workers.close()
 
@@ -98,28 +103,26 @@ class Workers:
             return 4 * max(sum(map(int, client.nthreads().values())), 1)
         return 2 * int(getattr(self._executor, "_max_workers", None) or os.cpu_count() or 1)
 
-    def computed(
-        self, job: Callable[[int], Job], numbers: list[int]
-    ) -> Iterator[tuple[int, Block]]:
+    def computed(self, job: Callable[[T], Job], places: list[T]) -> Iterator[tuple[T, Block]]:
         """The blocks as they are finished. Those under way when a worker ended are computed when
         nothing else is, one by one, and where it ends again case by case."""
-        ahead, lost = iter(numbers), list[int]()
-        pending: dict[Future[Block], int] = {}
+        ahead, lost = iter(places), list[T]()
+        pending: dict[Future[Block], T] = {}
         while True:
             room = 0 if lost else max(self.at_once - len(pending), 0)
-            for number in islice(ahead, room):
-                pending[self._submit(job(number))] = number
+            for place in islice(ahead, room):
+                pending[self._submit(job(place))] = place
             if pending:
                 for future in wait(pending, return_when=FIRST_COMPLETED).done:
-                    number, block = pending.pop(future), _result(future)
+                    place, block = pending.pop(future), _result(future)
                     if block is None:
-                        lost.append(number)
+                        lost.append(place)
                     else:
-                        yield number, block
+                        yield place, block
             elif lost:
                 self._renew()
-                for number in lost:
-                    yield number, self._alone(job(number))
+                for place in lost:
+                    yield place, self._alone(job(place))
                 lost = []
             else:
                 return
@@ -139,17 +142,14 @@ class Workers:
 
     def _alone(self, job: Job) -> Block:
         """A block computed when nothing else is; where its worker ends, case by case."""
-        block = self._attempt(job)
-        if block is None:
-            cases = [job.only(k) for k in range(len(job.values))]
-            block = joined([self._attempt(case) or broken(case, _ENDED) for case in cases])
-        return block
-
-    def _attempt(self, job: Job) -> Block | None:
         block = _result(self._submit(job))
-        if block is None:
-            self._renew()
-        return block
+        if block is not None:
+            return block
+        self._renew()
+        if len(job.values) == 1:
+            return blank(job, BROKEN, _ENDED)
+        cases = [self._alone(replace(job, values=[values])) for values in job.values]
+        return {name: np.concatenate([case[name] for case in cases]) for name in cases[0]}
 
     def _renew(self) -> None:
         """Start processes anew; a cluster does so by itself."""
@@ -207,7 +207,7 @@ def _ready() -> None:
     from crankmbs.scene.read import load_scene
 
     scene = load_scene("propeller").with_(run__until="settled")
-    solved(Job(scene, ("rod.length",), ((scene.rod.length,),), False))
+    solved(Job(scene, ("rod.length",), [(scene.rod.length,)]))
 
 
 def _processes(count: int) -> ProcessPoolExecutor:
