@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from crankmbs.mechanics.axes import axes_of
 from crankmbs.mechanics.geometry import top_position
 from crankmbs.mechanics.journals import of_journals, rocking_of_throws
 from crankmbs.mechanics.peaks import peak
@@ -17,11 +18,12 @@ from crankmbs.motion.multibody.forces import Forces
 from crankmbs.motion.multibody.model import Consistent, Model
 from crankmbs.numerics.arrays import Array, Index
 
-__all__ = ["Answers", "solution"]
+__all__ = ["MOTION", "Answers", "solution"]
+
+MOTION = ("time", "crank_angle", "crank_speed", "crank_acceleration")
+"""The variables of a motion itself."""
 
 _ROUNDING = 1e-12
-
-_MOTION = ("time", "crank_angle", "crank_speed", "crank_acceleration")
 
 
 def solution(
@@ -42,9 +44,8 @@ def solution(
         name: errors[name] + _ROUNDING * (size + 0.1 * largest[EVERY[name].units]) * bool(size)
         for name, size in peaks.items()
     }
-    time, theta, omega, alpha = (values[name] for name in _MOTION)
-    computed = {name: each for name, each in values.items() if name not in _MOTION}
-    samples = Samples(time, theta, omega, alpha, np.zeros_like(time), computed)
+    time, theta, omega, alpha = (values.pop(name) for name in MOTION)
+    samples = Samples(time, theta, omega, alpha, np.zeros_like(time), values)
     return Solution(samples, *said, *cost, errors=errors)
 
 
@@ -54,9 +55,6 @@ class Answers:
     def __init__(self, train: CrankTrain) -> None:
         self.forces, self.model, self._scene = Forces(train), Model(train.scene), train.scene
         self._banks = np.array([cylinder.bank for cylinder in self._scene.cylinders])
-        first = 5 * np.arange(len(self._banks))  # of each cylinder, in the coordinates
-        self._x = np.sort([0, *(first + 3), *(first + 6)])
-        self._turns = np.array([2, *(first + 5)])
 
     def close(self) -> None:
         """Let go of what exudyn holds."""
@@ -70,13 +68,16 @@ class Answers:
         modes : what acts in each piece of the motion; k, after : in which pieces the samples lie,
             at a cut in that before it, and at one in time in that after it
         """
-        forces, at = self.forces, {"time": time, "crank_angle": theta, "crank_speed": omega}
-        acts = np.array([forces.acting(mode.loads) for mode in modes])[after]
-        at |= {"external_torque": forces.torque(time, theta, omega, acts)}
-        if forces.train.law is not None:
+        torque, pushes = np.empty_like(time), np.empty((len(time), len(self._banks)))
+        motion = np.array([time, theta, omega, _senses(omega)])
+        for piece in np.unique(after):
+            here = after == piece
+            torque[here], pushes[here] = self.forces.outside(modes[piece], *motion[:, here])
+        at = dict(zip(MOTION, motion[:3], strict=False)) | {"external_torque": torque}
+        if self.forces.train.law is not None:
             at["fuel"] = np.array([mode.shares for mode in modes])[k]
         if self._scene.force:
-            at["applied_force"] = forces.applied(time, theta, omega, _senses(omega), acts)
+            at["applied_force"] = pushes
         return at | self.consistent(at, driven=False)
 
     def consistent(self, motion: Mapping[str, Array], *, driven: bool) -> dict[str, Array]:
@@ -87,84 +88,66 @@ class Answers:
             are; "friction_force" where a crank at rest is held
         """
         theta, omega = motion["crank_angle"], motion["crank_speed"]
-        gas = self.forces.gas(theta, motion.get("fuel"))
-        friction = self.forces.friction(theta, omega, gas, _senses(omega))
-        rests = omega[:, None] == 0.0
-        friction = np.where(rests, motion.get("friction_force", friction), friction)
-        applied = motion.get("applied_force", np.zeros_like(gas))
+        values = self.forces.gas(theta, motion.get("fuel"))
+        gas = push = values["gas_force"]
+        if self._scene.friction is not None:
+            friction = self.forces.friction(theta, omega, gas, _senses(omega))
+            rests = omega[:, None] == 0.0
+            friction = np.where(rests, motion.get("friction_force", friction), friction)
+            values["friction_force"], push = friction, push + friction
+        if self._scene.force:
+            values["applied_force"] = motion["applied_force"]
+            push = push + motion["applied_force"]
         drive = motion["crank_acceleration" if driven else "external_torque"]
-        push = gas + friction + applied
         system = self.model.states(theta, omega, push, drive, free=not driven)
-        values = self._of_bodies(system) | self._of_joints(system)
-        values |= {"gas_force": gas, **self.forces.pressures(theta, gas)}
-        values |= {} if self._scene.friction is None else {"friction_force": friction}
-        return values | ({"applied_force": applied} if self._scene.force else {})
+        return values | self._of_bodies(system) | self._of_joints(system, push)
 
     def _of_bodies(self, system: Consistent) -> dict[str, Array]:
-        """Motion of all bodies, energy, and what they do to the frame by the balance of momentum.
-
-        force = sum m (g - a)
-        moment = torque + sum r x m (g - a) - sum I rate of spin
-
-        Places are complex numbers, of crank, rod 1, piston 1, rod 2, ..., shape (m, 1 + 2 n), and
-        angles those of crank and rods, shape (m, 1 + n).
-        """
-        scene, mass = self._scene, self.model.mass
-        balance = self.model.weight - system.acceleration * mass
-        (r, phi), (v, rate), (a, spin), (pull, turning) = (
-            (each[:, self._x] + 1j * each[:, self._x + 1], each[:, self._turns])
-            for each in (*system[:3], balance)
-        )
-        moment = system.torque + (r.conj() * pull).imag.sum(axis=1) + turning.sum(axis=1)
+        """The motion of all bodies, and their energy."""
+        q, v, a = system[:3]
         turn = np.exp(-1j * self._banks)
-        pistons = [(each[:, 2::2] * turn).real for each in (r, v, a)]
-        tops = np.array([top_position(*gear.shape) for gear in scene.running_gear])
-        values = {
-            "crank_angle": phi[:, 0],
-            "crank_speed": rate[:, 0],
-            "crank_acceleration": spin[:, 0],
-            "kinetic_energy": 0.5 * system.velocity**2 @ mass,
-            "frame_force_x": pull.real.sum(axis=1),
-            "frame_force_y": pull.imag.sum(axis=1),
-            "frame_moment": moment,
-            "rod_angle": self._banks - phi[:, 1:],
-            "rod_angular_speed": -rate[:, 1:],
-            "rod_angular_acceleration": -spin[:, 1:],
-            "piston_position": pistons[0],
-            "piston_displacement": tops - pistons[0],
-            "piston_velocity": -pistons[1],
-            "piston_acceleration": -pistons[2],
+        along = [((each[:, 6::5] + 1j * each[:, 7::5]) * turn).real for each in (q, v, a)]
+        tops = np.array([top_position(*gear.shape) for gear in self._scene.running_gear])
+        return {
+            "crank_angle": q[:, 2],
+            "crank_speed": v[:, 2],
+            "crank_acceleration": a[:, 2],
+            "kinetic_energy": 0.5 * v**2 @ self.model.mass,
+            "rod_angle": self._banks - q[:, 5::5],
+            "rod_angular_speed": -v[:, 5::5],
+            "rod_angular_acceleration": -a[:, 5::5],
+            "piston_position": along[0],
+            "piston_displacement": tops - along[0],
+            "piston_velocity": -along[1],
+            "piston_acceleration": -along[2],
         }
-        if scene.levers is not None:
-            rocking = (pull[:, 1::2] + pull[:, 2::2]) @ np.array(scene.levers)
-            square, alpha = rate[np.newaxis, :, 0] ** 2, spin[np.newaxis, :, 0]
-            throws = rocking_of_throws(scene, phi[:, 0], (square, alpha, np.ones_like(alpha)))
-            about_x, about_y = (0.0, 0.0) if throws is None else (each[0] for each in throws)
-            values |= {
-                "rocking_moment_x": about_x - rocking.imag,
-                "rocking_moment_y": about_y + rocking.real,
-            }
-        return values
 
-    def _of_joints(self, system: Consistent) -> dict[str, Array]:
-        """Joint forces, each cylinder's in its axes, with their moments on the crank, and what of
-        them each journal carries."""
-        scene = self._scene
+    def _of_joints(self, system: Consistent, push: Array) -> dict[str, Array]:
+        """The forces of the joints, each cylinder's in its axes, with their moments on the crank,
+        what of them each journal carries, and what all do to the frame.
+
+        Forces are complex numbers; push : shape (m, n), on the pistons towards the crank.
+        """
+        scene, turn = self._scene, np.exp(1j * self._banks)
         forces = system.hinges[..., 0] + 1j * system.hinges[..., 1]
-        turn = np.exp(-1j * self._banks)
-        crank_pin, piston_pin = forces[:, 1::2] * turn, forces[:, 2::2] * turn
-        phases = np.array([cylinder.phase for cylinder in scene.cylinders])
+        crank_pin, piston_pin = forces[:, 1::2] / turn, forces[:, 2::2] / turn
+        on_piston = 1j * system.walls - push  # by the frame
+        piston = (system.position[:, 6::5] + 1j * system.position[:, 7::5]) / turn
+        on_frame = -forces[:, 0] - on_piston @ turn
         radii = np.array([gear.radius for gear in scene.running_gear])
-        lever = radii * np.exp(-1j * (system.position[:, 2:3] + phases))
+        lever = radii * np.exp(-1j * (system.position[:, 2:3] + axes_of(scene).phases))
         torque = -(lever * crank_pin).imag
         theta, omega, alpha = (each[None, :, 2] for each in system[:3])
-        rods = crank_pin.real.T[:, None], crank_pin.imag.T[:, None]
         motion = omega**2, alpha, np.ones_like(alpha)
+        rods = crank_pin.real.T[:, None], crank_pin.imag.T[:, None]
         journals = of_journals(scene, theta[0], motion, rods)
-        return {name: each[:, 0].T for name, each in journals.items()} | {
+        values = {name: each[:, 0].T for name, each in journals.items()} | {
             "external_torque": system.torque,
             "main_bearing_force_x": forces[:, 0].real,
             "main_bearing_force_y": forces[:, 0].imag,
+            "frame_force_x": on_frame.real,
+            "frame_force_y": on_frame.imag,
+            "frame_moment": -(piston.conj() * on_piston).imag.sum(axis=1),
             "side_force": system.walls,
             "piston_pin_force_x": piston_pin.real,
             "piston_pin_force_y": piston_pin.imag,
@@ -174,6 +157,13 @@ class Answers:
             "journal_torque": np.cumsum(torque, axis=1),
             "pin_torque": np.cumsum(torque, axis=1) - 0.5 * torque,
         }
+        if scene.levers is not None:
+            rocking = -((crank_pin + on_piston) * turn) @ np.array(scene.levers)
+            throws = rocking_of_throws(scene, theta[0], motion)
+            about_x, about_y = (0.0, 0.0) if throws is None else (each[0] for each in throws)
+            values["rocking_moment_x"] = about_x - rocking.imag
+            values["rocking_moment_y"] = about_y + rocking.real
+        return values
 
 
 def _senses(omega: Array) -> Array:

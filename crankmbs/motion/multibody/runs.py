@@ -94,12 +94,11 @@ def motion_of(
     for stretch, (low, high), last in zip(path.stretches, pairwise(edges), after, strict=True):
         time, angle, speed = table[:, low:high]
         mode, sense = stretch.begin.mode, float(np.sign(angle[-1, -1] - angle[0, 0]))
-        shares, acts = np.array([mode.shares]), np.array([forces.acting(mode.loads)])
-        acting = Acting(sense, phases=mode.loads)
-        cells = Cells(time, angle, speed, acting, shares.repeat(len(time), axis=0))
+        shares = np.array([mode.shares]).repeat(len(time), axis=0)
+        cells = Cells(time, angle, speed, Acting(sense, phases=mode.loads), shares)
         inside = cells.inner_reader()  # at its ends loads may jump
         at = inside(time), inside(angle), inside(speed)
-        outside = forces.torque(*at, acts.repeat(time.size, axis=0)).reshape(time.shape)
+        outside = forces.outside(mode, *at, at[2])[0].reshape(time.shape)
         end = last._replace(time=time.item(-1), theta=angle.item(-1), omega=speed.item(-1))
         pieces.append(Piece(begin, end, (), replace(cells, outside=outside)))
         begin = end
