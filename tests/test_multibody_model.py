@@ -82,7 +82,7 @@ def at(run: Path, time: Array) -> Array:
 def test_accelerations_and_joint_forces_are_those_of_the_reduced_equations(scene: Scene) -> None:
     train, model = crank_train(scene), Model(scene)
     theta, omega = np.linspace(-7.0, 9.0, 50), np.linspace(-90.0, 120.0, 50)
-    gas = Forces(train).gas(theta, None)
+    gas = Forces(train).gas(theta, None)["gas_force"]
     found = model.states(theta, omega, gas, np.full(50, 7.0), free=True)
     model.close()
     inertia, slope, torque = reduce(train, theta)

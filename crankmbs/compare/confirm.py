@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from crankmbs.errors import FormulationError, InputError
 from crankmbs.measures.interpolate import read_with_errors
-from crankmbs.mechanics.knots import repeat
+from crankmbs.mechanics.knots import apart, repeat
+from crankmbs.mechanics.pressure import PeriodicPressure
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.mechanics.variables import EVERY
 from crankmbs.motion.cells import Cells
@@ -19,9 +19,6 @@ from crankmbs.motion.motion import Motion
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
-
-if TYPE_CHECKING:
-    from crankmbs.motion.multibody.beside import Shares
 
 __all__ = ["Confirmation", "Difference", "confirm"]
 
@@ -105,7 +102,7 @@ class Confirmation:
     @property
     def difference(self) -> float:
         """The largest difference over the last period, relative to the peak of its quantity."""
-        return max((row.largest[0] / row.peak for row in self.period), default=math.nan)
+        return _largest(self.period)
 
     @property
     def error(self) -> float:
@@ -115,7 +112,7 @@ class Confirmation:
     @property
     def at_states(self) -> float:
         """The largest difference at the states, relative to the peak."""
-        return max((row.largest[0] / row.peak for row in self.states), default=math.nan)
+        return _largest(self.states)
 
     @property
     def holds(self) -> bool:
@@ -137,6 +134,10 @@ class Confirmation:
             f"{'to' if self.holds else 'by'} {self.difference:.0e} of the peak in motion and every "
             f"joint force {part}, with a stated error of {self.error:.0e}"
         )
+
+
+def _largest(rows: tuple[Difference, ...]) -> float:
+    return max((row.largest[0] / row.peak for row in rows), default=math.nan)
 
 
 def confirm(result: Result) -> Confirmation:
@@ -216,25 +217,34 @@ def _last_period(
     else:
         start = part.at(np.array([begin]), in_time=True)
         state = begin, float(start.theta[0]), float(start.omega[0])
-        fuel = ours.get("fuel")
-        shares = None if fuel is None else _shares(train, ours["crank_angle"], fuel)
+        if train.combustion is not None:
+            train = _fired(train, state[1], ours["crank_angle"], ours["fuel"])
         phases, steps = part.cells[0].acting.phases, _STEPS // len(result.scene.cylinders)
-        theirs, errors = beside.integrated(train, state, (phases, shares), times, _RTOL, steps)
+        theirs, errors = beside.integrated(train, state, phases, times, _RTOL, steps)
     turned = abs(part.turned)
     rows = {"crank angle": ("crank_angle",), **_MOTION, **_forces(result.scene)}
     return _rows(rows, ours, theirs, stated, errors, turned), (begin, end)
 
 
-def _shares(train: CrankTrain, theta: Array, fuel: Array) -> Shares:
-    """The shares of the combustion over the crank angle, as they were at times close together."""
-    from crankmbs.motion.multibody.beside import Shares
+def _fired(train: CrankTrain, start: float, theta: Array, fuel: Array) -> CrankTrain:
+    """The train with the pressures of the firings that were, over the crank angles of one period:
+    those from where it starts [rad], and at places close together with their shares.
 
-    assert train.law is not None
-    order = np.argsort(theta)
-    angles = repeat(np.array(train.law.angles), train.scene.period, theta.min(), theta.max())
-    angles = np.sort(angles)
-    after = np.searchsorted(theta[order], np.append(theta.min(), angles))
-    return Shares(angles, fuel[order][after])
+    In a period each cylinder decides once, where its compression begins.
+    """
+    pressures, period = [], train.scene.period
+    low = min(start, float(theta.min())) - 0.25 * period / _PLACES  # inside it no share changes
+    below, above = fuel[theta.argmin()], fuel[theta.argmax()]
+    pairs = zip(train.pressure or (), train.combustion or (), strict=True)
+    for k, (without, more) in enumerate(pairs):
+        first = low + train.scene.cylinders[k].phase
+        decided = first + (math.pi - first) % period
+        inner = repeat(without.knots[:-1], without.period, first, first + without.period)
+        knots = apart(np.concatenate([[first, decided], inner, [first + without.period]]))
+        share = np.where(0.5 * (knots[1:] + knots[:-1]) < decided, below[k], above[k])
+        cubics = without.on(knots).coefficients + share * more.on(knots).coefficients
+        pressures.append(PeriodicPressure(knots, cubics))
+    return replace(train, pressure=tuple(pressures), combustion=None, law=None)
 
 
 def _at_states(result: Result, train: CrankTrain) -> tuple[Difference, ...]:
