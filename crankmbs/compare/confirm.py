@@ -233,7 +233,7 @@ def _fired(train: CrankTrain, start: float, theta: Array, fuel: Array) -> CrankT
     In a period each cylinder decides once, where its compression begins.
     """
     pressures, period = [], train.scene.period
-    low = min(start, float(theta.min())) - 0.25 * period / _PLACES  # inside it no share changes
+    low = 0.5 * (min(start, theta.min()) + max(start, theta.max()) - period)  # beyond both ends
     below, above = fuel[theta.argmin()], fuel[theta.argmax()]
     pairs = zip(train.pressure or (), train.combustion or (), strict=True)
     for k, (without, more) in enumerate(pairs):

@@ -90,5 +90,6 @@ def initial(train: CrankTrain, step: float) -> tuple[Array, Array, Array]:
     with closing(Answers(train)) as answers:
         state = State(0.0, theta, omega, 0.0, begun(train))
         enter(answers.model, answers.forces, state, 0.0, Limits(math.inf, EVERYWHERE, 0))
-        _, quiet = answers.model.quiet_start(state[:3], step, driven=scene.motion is not None)
+        answers.model.driven = scene.motion is not None
+        _, quiet = answers.model.quiet_start(state[:3], step)
     return quiet.position[0], quiet.velocity[0], quiet.acceleration[0]

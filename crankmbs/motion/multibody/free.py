@@ -88,10 +88,8 @@ def run(train: CrankTrain, rtol: float, cost_cap: float) -> tuple[Solution, Kept
     if runs.moves and not (worst := _worst(values, errors)) <= rtol:
         message += _shortfall(worst, rtol, why, runs.steps / rate, cost_cap)
     cost = sum(path.iterations for path in runs.paths), runs.steps
-    motions = runs.motions if runs.moves else ()
-    return solution(values, errors, (status, message), cost), Kept(
-        train, start, motions, runs.ending
-    )
+    kept = Kept(train, start, runs.motions, runs.ending)
+    return solution(values, errors, (status, message), cost), kept
 
 
 def refined(
@@ -155,7 +153,7 @@ def _worst(values: Values, errors: Errors) -> float:
 
 def _ended(runs: Runs, plan: Plan, cap: float) -> tuple[int, str]:
     """Status and sentence."""
-    time, theta, omega = runs.end[:3]
+    time, theta, omega = runs.paths[-1].end[:3]
     ending = runs.ending
     if ending is Ending.HELD and runs.forces.train.scene.friction and omega == 0.0:
         ending = Ending.STICKS

@@ -71,6 +71,7 @@ def integrate(
     """
     state, stretches = start, list[Stretch]()
     sense, steps, iterations, idle = 0.0, 0, 0, 0
+    steady = all(load.is_steady for load in forces.train.loads)
     ending = Ending.COMPLETE
     while (
         ending is Ending.COMPLETE
@@ -81,7 +82,10 @@ def integrate(
         if entered is None or idle > 1 or steps >= limits.steps:
             ending = Ending.CALLED_OFF if entered and idle <= 1 else Ending.HELD
             break
-        bounds, _ = entered
+        bounds, alpha = entered
+        if not stretches and state.omega == 0.0 and abs(alpha) <= _STILL and steady:
+            ending = Ending.UNMOVED
+            break
         rows, ending, cost = model.run(state[:3], step, limits.steps - steps, bounds, stiff=stiff)
         steps, iterations = steps + len(rows) + _ENTRY, iterations + cost
         if ending is Ending.COMPLETE:

@@ -54,22 +54,11 @@ class Consistent(NamedTuple):
     torque: Array
 
 
-class Run(NamedTuple):
-    """Rows of time [s], crank angle [rad], speed [rad/s] and acceleration [rad/s2], shape (m, 4).
-
-    ending : COMPLETE where a bound was passed, CALLED_OFF after all steps, DIVERGED where exudyn
-        failed or a rod turned over; iterations : of Newton's method
-    """
-
-    rows: Array
-    ending: Ending
-    iterations: int
-
-
 class Model:
     """A scene in exudyn. Set its forces, then run it from a state, or solve for states.
 
     torque [N m] : on a free crank, of time [s], crank angle [rad] and speed [rad/s]
+    driven : whether the crank turns at constant speed instead
     pushes [N] : on each piston towards the crank, of time, crank angle, and of the piston's
         displacement from its top dead centre [m] and velocity in that direction [m/s]
     mass, weight : shape (q,), of each coordinate, as exudyn has it
@@ -79,6 +68,7 @@ class Model:
         self.scene, self.mechanism = scene, mechanism_of(scene)
         self.torque: Callable[[float, float, float], float] = lambda time, theta, omega: 0.0
         self.pushes: Sequence[Push] = ()
+        self.driven = False
         self._begin, self._largest = 0.0, 1.0
         pushed = bool(scene.gas or scene.friction or scene.force)
         self._container, self._system = build(
@@ -113,35 +103,32 @@ class Model:
 
     # over time
 
-    def start(self, time: Array, theta: Array, omega: Array, *, driven: bool = False) -> Consistent:
-        """The system in states of shape (m,), free or at constant speed, under the forces that it
-        was given."""
+    def start(self, time: Array, theta: Array, omega: Array) -> Consistent:
+        """The system in states of shape (m,), under the forces that it was given."""
         loop = closed_loops(self.scene, theta)
         down, speeds = displacements(self.scene, loop), -loop.x_1 * omega
         push = np.zeros_like(down.T)
         for k, force in enumerate(self.pushes):
             push[:, k] = [*map(force, *(row.tolist() for row in (time, theta, down[k], speeds[k])))]
         drive = np.zeros_like(theta)
-        if not driven:
+        if not self.driven:
             drive[:] = [*map(self.torque, time.tolist(), theta.tolist(), omega.tolist())]
-        return self.states(theta, omega, push, drive, free=not driven)
+        return self.states(theta, omega, push, drive, free=not self.driven)
 
     def quiet_start(
-        self, state: tuple[float, float, float], step: float, *, driven: bool = False
+        self, state: tuple[float, float, float], step: float
     ) -> tuple[tuple[float, float], Consistent]:
         """Speed and acceleration of the crank in the method's own smooth solution, and the state
         with position, velocity and acceleration from which the multipliers do not ring.
 
         A run that began with the speed v itself would have between its first two rows an error that
         does not fall as h^2 at a fixed time.
-
-        driven : at constant speed
         """
         time, theta, omega = state
-        here = self.start(*(np.array([each]) for each in state), driven=driven)
+        here = self.start(*(np.array([each]) for each in state))
         alpha, t = here.acceleration.item(2), np.array([-0.5, 0.5]) * step
         beside = time + t, theta + (omega + 0.5 * alpha * t) * t, omega + alpha * t
-        before, after = self.start(*beside, driven=driven).acceleration
+        before, after = self.start(*beside).acceleration
         crank, *shifts = quiet_shifts((after - before) / step, step)
         smooth = omega + float(crank[2]) if omega else 0.0  # at rest it is not to turn back
         q, v, a = (rows + shift for rows, shift in zip(here[:3], shifts, strict=True))
@@ -155,11 +142,17 @@ class Model:
         bounds: Bounds,
         *,
         stiff: bool,
-    ) -> Run:
+    ) -> tuple[Array, Ending, int]:
         """Integrate from a time [s], angle [rad], speed [rad/s] by the generalized-alpha method.
 
         most : steps; bounds : the step that passes one is the last; stiff : whether Newton's method
             shall know how the loads change; 2.7 times as slow
+
+        Returns
+        -------
+        rows of time [s], crank angle [rad], speed [rad/s] and acceleration [rad/s2], shape (m, 4);
+        COMPLETE where a bound was passed, CALLED_OFF after all steps, DIVERGED where exudyn failed
+        or a rod turned over; iterations of Newton's method
         """
         rows: list[tuple[float, float, float, float]] = []
         rods = [(5 + 5 * k, c.bank) for k, c in enumerate(self.scene.cylinders)]
@@ -194,7 +187,7 @@ class Model:
             self._system.SolveDynamic(settings)
         iterations = int(self._system.sys["dynamicSolver"].it.newtonStepsCount)
         ending = Ending.CALLED_OFF if len(rows) == most else Ending.DIVERGED
-        return Run(np.array(rows), Ending.COMPLETE if outside else ending, iterations)
+        return np.array(rows), Ending.COMPLETE if outside else ending, iterations
 
     # at given states
 
