@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from contextlib import closing
 
 from crankmbs.mechanics.peaks import peak
-from crankmbs.mechanics.speed import speed_law
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import Phases
 from crankmbs.motion.base import Samples, Solution, State
@@ -81,15 +80,12 @@ def initial(train: CrankTrain, step: float) -> tuple[Array, Array, Array]:
     """Coordinates at the start of a scene, their velocities and accelerations, from which a run
     with steps of this length [s] does not ring, under the forces of the side of a jump to which the
     crank moves; of a prescribed speed a constant one."""
-    scene = train.scene
-    if scene.motion is not None:
-        theta, omega, _ = map(float, speed_law(scene.motion).at_time(0.0))
-    else:
-        assert scene.start is not None
-        theta, omega = scene.start.angle, scene.start.speed
+    first = train.scene.start or train.scene.motion
+    assert first is not None
+    assert isinstance(first.speed, float)
     with closing(Answers(train)) as answers:
-        state = State(0.0, theta, omega, 0.0, begun(train))
+        state = State(0.0, first.angle, first.speed, 0.0, begun(train))
         enter(answers.model, answers.forces, state, 0.0, Limits(math.inf, EVERYWHERE, 0))
-        answers.model.driven = scene.motion is not None
+        answers.model.driven = train.scene.start is None
         _, quiet = answers.model.quiet_start(state[:3], step)
     return quiet.position[0], quiet.velocity[0], quiet.acceleration[0]

@@ -253,9 +253,6 @@ def _total(
     terms: list[tuple[int, Callable[[float], float]]], whole: Sequence[Callable[..., float]]
 ) -> Callable[..., float]:
     """The sum of functions of one argument, by its number, and of all."""
-    if len(terms) == 1 and not whole:
-        slot, alone = terms[0]
-        return lambda *at: alone(at[slot])
 
     def total(*at: float) -> float:
         value = 0.0

@@ -107,12 +107,11 @@ class Model:
         """The system in states of shape (m,), under the forces that it was given."""
         loop = closed_loops(self.scene, theta)
         down, speeds = displacements(self.scene, loop), -loop.x_1 * omega
-        push = np.zeros_like(down.T)
+        push, drive = np.zeros_like(down.T), np.zeros_like(theta)
         for k, force in enumerate(self.pushes):
-            push[:, k] = [*map(force, *(row.tolist() for row in (time, theta, down[k], speeds[k])))]
-        drive = np.zeros_like(theta)
+            push[:, k] = np.frompyfunc(force, 4, 1)(time, theta, down[k], speeds[k])
         if not self.driven:
-            drive[:] = [*map(self.torque, time.tolist(), theta.tolist(), omega.tolist())]
+            drive[:] = np.frompyfunc(self.torque, 3, 1)(time, theta, omega)
         return self.states(theta, omega, push, drive, free=not self.driven)
 
     def quiet_start(
