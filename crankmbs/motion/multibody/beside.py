@@ -11,10 +11,11 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import Phases
 from crankmbs.motion.base import Samples, Solution, State
 from crankmbs.motion.mode import Mode, begun
-from crankmbs.motion.multibody.answer import MOTION, Answers, solution
+from crankmbs.motion.multibody.answer import MOTION, solution, values_at
 from crankmbs.motion.multibody.forces import EVERYWHERE, Limits
 from crankmbs.motion.multibody.free import refined
 from crankmbs.motion.multibody.integrate import enter
+from crankmbs.motion.multibody.model import Model
 from crankmbs.motion.multibody.runs import Motion, Runs
 from crankmbs.numerics.arrays import Array
 
@@ -44,17 +45,17 @@ def integrated(
     def places(answer: Motion) -> tuple[Array, Array]:
         return times, answer.at_times(times)[1]
 
-    with closing(Answers(train)) as answers:
+    with closing(Model(train)) as model:
         start = State(*state, 0.0, Mode(phases))
-        runs = Runs(answers.forces, answers.model, start, limits)
-        return refined(runs, answers, rtol, places, by_angle=False)[:2]
+        runs = Runs(model, start, limits)
+        return refined(runs, rtol, places, by_angle=False)[:2]
 
 
 def consistent(train: CrankTrain, motion: Mapping[str, Array], *, driven: bool) -> dict[str, Array]:
     """Accelerations, multipliers and all that follows from them at states of a motion, as
-    `crankmbs.motion.multibody.answer.Answers.consistent` says."""
-    with closing(Answers(train)) as answers:
-        return answers.consistent(motion, driven=driven)
+    `crankmbs.motion.multibody.answer.values_at` says."""
+    with closing(Model(train)) as model:
+        return values_at(model, motion, driven=driven)
 
 
 def driven(train: CrankTrain, sampled: Solution) -> Solution:
@@ -65,12 +66,12 @@ def driven(train: CrankTrain, sampled: Solution) -> Solution:
         and forces from outside
     """
 
-    def values_at(at: Samples) -> dict[str, Array]:
+    def found(at: Samples) -> dict[str, Array]:
         rows = zip(MOTION, (at.time, at.theta, at.omega, at.alpha), strict=True)
         motion = {**dict(rows), **at.computed}
         return consistent(train, motion, driven=True) | motion
 
-    values, other = (values_at(at or sampled.samples) for at in (sampled.samples, sampled.better))
+    values, other = (found(at or sampled.samples) for at in (sampled.samples, sampled.better))
     errors = {name: peak(other[name] - each) for name, each in values.items()}
     said = sampled.status, sampled.message
     return solution(values, errors, said, (sampled.evaluations, 0))
@@ -83,9 +84,9 @@ def initial(train: CrankTrain, step: float) -> tuple[Array, Array, Array]:
     first = train.scene.start or train.scene.motion
     assert first is not None
     assert isinstance(first.speed, float)
-    with closing(Answers(train)) as answers:
+    with closing(Model(train)) as model:
         state = State(0.0, first.angle, first.speed, 0.0, begun(train))
-        enter(answers.model, answers.forces, state, 0.0, Limits(math.inf, EVERYWHERE, 0))
-        answers.model.driven = train.scene.start is None
-        _, quiet = answers.model.quiet_start(state[:3], step)
+        enter(model, state, 0.0, Limits(math.inf, EVERYWHERE, 0))
+        model.driven = train.scene.start is None
+        _, quiet = model.quiet_start(state[:3], step)
     return quiet.position[0], quiet.velocity[0], quiet.acceleration[0]

@@ -90,7 +90,8 @@ class Forces:
 
         def forces(theta: Array, sense: float) -> Array:
             omega = np.full_like(theta, sense)
-            torque, pushes = self.outside(Mode(), np.zeros_like(theta), theta, omega, omega)
+            motion = np.array([np.zeros_like(theta), theta, omega])
+            torque, pushes = self.outside(Mode(), motion, omega)
             gas = (self.gas(theta, np.array([share]))["gas_force"] for share in (0.0, 1.0))
             return np.column_stack([*gas, pushes, torque])
 
@@ -140,12 +141,14 @@ class Forces:
         sliding = (-closed_loops(scene, theta).x_1 * omega).T
         return np.asarray(-dry - rubs.viscous * sliding)
 
-    def outside(
-        self, mode: Mode, time: Array, theta: Array, omega: Array, sense: Array
-    ) -> tuple[Array, Array]:
+    def outside(self, mode: Mode, motion: Array, sense: Array) -> tuple[Array, Array]:
         """Torque [N m] of all torques that act, shape (m,), and forces from outside on the pistons
-        [N] towards the crank, shape (m, n), that slide in this sense of rotation."""
-        torque, pushes = np.zeros_like(theta), np.zeros((len(theta), len(self._phases)))
+        [N] towards the crank, shape (m, n), that slide in this sense of rotation.
+
+        motion : times [s], crank angles [rad] and speeds [rad/s], shape (3, m)
+        """
+        time, theta, omega = motion
+        torque, pushes = np.zeros_like(time), np.zeros((len(time), len(self._phases)))
         for _, load in acting(self.train.loads, mode.loads):
             if isinstance(load, OnCrank):
                 pushes += load.forces(time, theta, omega, sense)

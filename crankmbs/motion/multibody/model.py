@@ -17,12 +17,12 @@ import numpy as np
 
 from crankmbs.mechanics.axes import closed_loops, displacements
 from crankmbs.mechanics.geometry import top_position
+from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.multibody.forces import Bounds, Push
+from crankmbs.motion.multibody.forces import Bounds, Forces, Push
 from crankmbs.motion.multibody.generalized_alpha import quiet_shifts, settings_of
 from crankmbs.motion.multibody.mechanism import build, closed, mechanism_of
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.scene import Scene
 
 __all__ = ["Consistent", "Model"]
 
@@ -55,16 +55,19 @@ class Consistent(NamedTuple):
 
 
 class Model:
-    """A scene in exudyn. Set its forces, then run it from a state, or solve for states.
+    """A crank train in exudyn. Set its forces, then run it from a state, or solve for states.
 
+    forces : of the train
     torque [N m] : on a free crank, of time [s], crank angle [rad] and speed [rad/s]
     driven : whether the crank turns at constant speed instead
     pushes [N] : on each piston towards the crank, of time, crank angle, and of the piston's
         displacement from its top dead centre [m] and velocity in that direction [m/s]
     mass, weight : shape (q,), of each coordinate, as exudyn has it
+    tops [m], banks [rad] : of the cylinders
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, train: CrankTrain) -> None:
+        scene, self.forces = train.scene, Forces(train)
         self.scene, self.mechanism = scene, mechanism_of(scene)
         self.torque: Callable[[float, float, float], float] = lambda time, theta, omega: 0.0
         self.pushes: Sequence[Push] = ()
@@ -81,7 +84,8 @@ class Model:
             data.GetODE2Coordinates_t(copy=False),
             data.GetODE2Coordinates_tt(copy=False),
         )
-        self._tops = [top_position(*gear.shape) for gear in scene.running_gear]
+        self.tops = [top_position(*gear.shape) for gear in scene.running_gear]
+        self.banks = np.array([cylinder.bank for cylinder in scene.cylinders])
         self._towards = [(-guide.normal[1], guide.normal[0]) for guide in self.mechanism.guides]
         self._read()
 
@@ -97,7 +101,7 @@ class Model:
     def _push(self, k: int, time: float) -> tuple[float, float]:
         (x, y), at = self._towards[k], 6 + 5 * k
         speed = x * self._v.item(at) + y * self._v.item(at + 1)
-        down = self._tops[k] + x * self._q.item(at) + y * self._q.item(at + 1)
+        down = self.tops[k] + x * self._q.item(at) + y * self._q.item(at + 1)
         force = self.pushes[k](self._begin + time, self._q.item(2), down, speed)
         return force * x, force * y
 
@@ -154,7 +158,7 @@ class Model:
         or a rod turned over; iterations of Newton's method
         """
         rows: list[tuple[float, float, float, float]] = []
-        rods = [(5 + 5 * k, c.bank) for k, c in enumerate(self.scene.cylinders)]
+        rods = [*zip(self._turns.tolist()[1:], self.banks.tolist(), strict=True)]
         (_, end), (low, high), (slow, fast) = bounds
         low, high = low - _ON, high + _ON
         slow -= _BESIDE * max(abs(slow), 1.0) + _ROUNDED / step

@@ -95,8 +95,8 @@ def motion_of(
         shares = np.array([mode.shares]).repeat(len(time), axis=0)
         cells = Cells(time, angle, speed, Acting(sense, phases=mode.loads), shares)
         inside = cells.inner_reader()  # at its ends loads may jump
-        at = inside(time), inside(angle), inside(speed)
-        outside = forces.outside(mode, *at, at[2])[0].reshape(time.shape)
+        at = np.array([inside(time), inside(angle), inside(speed)])
+        outside = forces.outside(mode, at, at[2])[0].reshape(time.shape)
         end = last._replace(time=time.item(-1), theta=angle.item(-1), omega=speed.item(-1))
         pieces.append(Piece(begin, end, replace(cells, outside=outside)))
         begin = end
@@ -141,8 +141,8 @@ class Runs:
     motions: tuple[Motion, ...] = ()
     rounded = False
 
-    def __init__(self, forces: Forces, model: Model, start: State, limits: Limits) -> None:
-        self.forces, self.model, self.start = forces, model, start
+    def __init__(self, model: Model, start: State, limits: Limits) -> None:
+        self.model, self.start = model, start
         self._limits, self._stiff = limits, False
         self.paths = list[Path]()
         self._step = self._coarsest()
@@ -178,7 +178,7 @@ class Runs:
             return False
         off = math.copysign(_SHAKEN * (1.0 + abs(there)), reached.theta - there)
         self.shaken = self._run(start=self.start._replace(theta=there + off))
-        self.motions = (motion_of(self.forces, path),)
+        self.motions = (motion_of(self.model.forces, path),)
         return self.halve() and self.halve()
 
     def _coarse(self) -> Path:
@@ -210,7 +210,7 @@ class Runs:
     def _run(self, most: int | None = None, start: State | None = None) -> Path:
         limits = self._limits if most is None else self._limits._replace(steps=most)
         begin, stiff = start or self.start, self._stiff
-        return integrate(self.forces, self.model, begin, limits, self._step, stiff=stiff)
+        return integrate(self.model, begin, limits, self._step, stiff=stiff)
 
     @property
     def affords_another(self) -> bool:
@@ -228,7 +228,7 @@ class Runs:
         what the rounding of all steps grows to, as they do at random. A run that is cut another
         number of times than the finest is compared as it is.
         """
-        forces, fine = self.forces, self.paths[-1]
+        forces, fine = self.model.forces, self.paths[-1]
         alike = [path for path in self.paths if len(path.stretches) == len(fine.stretches)]
         if self.paths[-2] is not alike[-2:][0]:
             return motion_of(forces, fine), motion_of(forces, self.paths[-2])
@@ -259,7 +259,7 @@ class Runs:
         speed, end = abs(self.start.omega), self._limits.time
         if speed == 0.0:
             nowhere = Limits(math.inf, (-math.inf, math.inf), 0)
-            entered = enter(self.model, self.forces, self.start, 0.0, nowhere)
+            entered = enter(self.model, self.start, 0.0, nowhere)
             alpha = abs(entered[1]) if entered else 0.0
             speed = min(math.sqrt(4.0 * math.pi * alpha), alpha * end)
         turn = 2.0 * math.pi / speed if speed > 0.0 else math.inf
