@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import dropwhile, takewhile
 
 import numpy as np
 
@@ -189,16 +190,14 @@ def _moving(result: Result) -> Motion | None:
     """The end of the motion, of a period at most, in which the crank neither rests nor is held."""
     motion = result.passes.answer
     part = motion.last(result.scene.period) or motion
-    pieces = list(part.cells)
-    while pieces and _rests(pieces[-1]):
-        pieces.pop()
-    first = next((k for k in reversed(range(len(pieces))) if _rests(pieces[k])), -1)
-    return Motion(part.train, pieces[first + 1 :]) if pieces else None
+    backwards = takewhile(_turns, dropwhile(lambda cells: not _turns(cells), part.cells[::-1]))
+    pieces = list(backwards)[::-1]
+    return Motion(part.train, pieces) if pieces else None
 
 
-def _rests(cells: Cells) -> bool:
+def _turns(cells: Cells) -> bool:
     acting = cells.acting
-    return acting.holds or acting.sense == 0.0 or float(cells.time[-1, -1]) == cells.time[0, 0]
+    return not acting.holds and acting.sense != 0.0 and cells.time[-1, -1] != cells.time[0, 0]
 
 
 def _last_period(
@@ -232,16 +231,16 @@ def _fired(train: CrankTrain, start: float, theta: Array, fuel: Array) -> CrankT
 
     In a period each cylinder decides once, where its compression begins.
     """
-    pressures, period = [], train.scene.period
+    period, pressures = train.scene.period, []
     low = 0.5 * (min(start, theta.min()) + max(start, theta.max()) - period)  # beyond both ends
-    below, above = fuel[theta.argmin()], fuel[theta.argmax()]
-    pairs = zip(train.pressure or (), train.combustion or (), strict=True)
-    for k, (without, more) in enumerate(pairs):
-        first = low + train.scene.cylinders[k].phase
-        decided = first + (math.pi - first) % period
-        inner = repeat(without.knots[:-1], without.period, first, first + without.period)
-        knots = apart(np.concatenate([[first, decided], inner, [first + without.period]]))
-        share = np.where(0.5 * (knots[1:] + knots[:-1]) < decided, below[k], above[k])
+    gases = zip(train.scene.cylinders, train.pressure or (), train.combustion or (), strict=True)
+    ends = zip(fuel[theta.argmin()], fuel[theta.argmax()], strict=True)
+    for (cylinder, without, more), (below, above) in zip(gases, ends, strict=True):
+        first = low + cylinder.phase
+        decided, last = first + (math.pi - first) % period, first + without.period
+        inner = repeat(without.knots[:-1], without.period, first, last)
+        knots = apart(np.concatenate([[first, decided, last], inner]))
+        share = np.where(0.5 * (knots[1:] + knots[:-1]) < decided, below, above)
         cubics = without.on(knots).coefficients + share * more.on(knots).coefficients
         pressures.append(PeriodicPressure(knots, cubics))
     return replace(train, pressure=tuple(pressures), combustion=None, law=None)

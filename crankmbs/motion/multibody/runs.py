@@ -258,8 +258,7 @@ class Runs:
         """
         speed, end = abs(self.start.omega), self._limits.time
         if speed == 0.0:
-            nowhere = Limits(math.inf, (-math.inf, math.inf), 0)
-            entered = enter(self.model, self.start, 0.0, nowhere)
+            entered = enter(self.model, self.start, 0.0, self._limits)
             alpha = abs(entered[1]) if entered else 0.0
             speed = min(math.sqrt(4.0 * math.pi * alpha), alpha * end)
         turn = 2.0 * math.pi / speed if speed > 0.0 else math.inf
