@@ -59,10 +59,10 @@ def start_of(scene: Scene) -> State:
 
 
 def paths(scene: Scene, step: float, halvings: int) -> list[Path]:
-    model = Model(scene)
+    model = Model(crank_train(scene))
     limits = Limits(0.05, (-math.inf, math.inf), 10**6)
-    forces, start = Forces(crank_train(scene)), start_of(scene)
-    found = [integrate(forces, model, start, limits, step / 2**k) for k in range(halvings)]
+    start = start_of(scene)
+    found = [integrate(model, start, limits, step / 2**k) for k in range(halvings)]
     model.close()
     return found
 
@@ -80,9 +80,9 @@ def at(run: Path, time: Array) -> Array:
 
 @pytest.mark.parametrize("scene", [COASTING, ASKEW, V_TWIN], ids=["one", "askew", "banks"])
 def test_accelerations_and_joint_forces_are_those_of_the_reduced_equations(scene: Scene) -> None:
-    train, model = crank_train(scene), Model(scene)
+    train, model = crank_train(scene), Model(crank_train(scene))
     theta, omega = np.linspace(-7.0, 9.0, 50), np.linspace(-90.0, 120.0, 50)
-    gas = Forces(train).gas(theta, None)
+    gas = model.forces.gas(theta, None)["gas_force"]
     found = model.states(theta, omega, gas, np.full(50, 7.0), free=True)
     model.close()
     inertia, slope, torque = reduce(train, theta)
@@ -98,7 +98,7 @@ def test_accelerations_and_joint_forces_are_those_of_the_reduced_equations(scene
 
 
 def test_positions_are_exudyns_own_closed_loop() -> None:
-    model = Model(ASKEW)
+    model = Model(crank_train(ASKEW))
     theta = np.linspace(0.0, 6.0, 30)
     rest = np.zeros((30, 2))
     found = model.states(theta, np.full(30, 3.0), rest, np.zeros(30), free=True)
@@ -199,11 +199,11 @@ def run_of(change: Array) -> Path:
 def test_runs_are_extrapolated_where_their_slopes_agree_to_order_two(
     shares: tuple[float, ...], smooth: bool, clean: bool
 ) -> None:
-    model = Model(COASTING)
+    model = Model(crank_train(COASTING))
     limits = Limits(1.0, (-math.inf, math.inf), 1000)
-    runs = Runs(Forces(crank_train(COASTING)), model, start_of(COASTING), limits)
+    runs = Runs(model, start_of(COASTING), limits)
     model.close()
-    runs.forces.smooth = smooth
+    model.forces.smooth = smooth
     runs.paths = [run_of(1e-3 * share * np.array([1.0, 0.5])) for share in shares]
     runs.shaken = runs.paths[0]
     time = np.linspace(0.0, 1.0, 7)

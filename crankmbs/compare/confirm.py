@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
-from itertools import groupby
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from itertools import dropwhile, takewhile
 
 import numpy as np
 
 from crankmbs.errors import FormulationError, InputError
 from crankmbs.measures.interpolate import read_with_errors
-from crankmbs.mechanics.knots import repeat
+from crankmbs.mechanics.knots import apart, repeat
 from crankmbs.mechanics.peaks import peak
+from crankmbs.mechanics.pressure import PeriodicPressure
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.mechanics.variables import EVERY
 from crankmbs.motion.cells import Cells
@@ -21,9 +21,6 @@ from crankmbs.motion.motion import Motion
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
-
-if TYPE_CHECKING:
-    from crankmbs.motion.multibody.beside import Shares
 
 __all__ = ["Confirmation", "Difference", "confirm"]
 
@@ -189,13 +186,14 @@ def _moving(result: Result) -> Motion | None:
     """The end of the motion, of a period at most, in which the crank neither rests nor is held."""
     motion = result.passes.answer
     part = motion.last(result.scene.period) or motion
-    stretches = [list(cells) for rests, cells in groupby(part.cells, _rests) if not rests]
-    return Motion(part.train, stretches[-1]) if stretches else None
+    backwards = takewhile(_turns, dropwhile(lambda cells: not _turns(cells), part.cells[::-1]))
+    pieces = list(backwards)[::-1]
+    return Motion(part.train, pieces) if pieces else None
 
 
-def _rests(cells: Cells) -> bool:
+def _turns(cells: Cells) -> bool:
     acting = cells.acting
-    return acting.holds or acting.sense == 0.0 or float(cells.time[-1, -1]) == cells.time[0, 0]
+    return not acting.holds and acting.sense != 0.0 and cells.time[-1, -1] != cells.time[0, 0]
 
 
 def _last_period(
@@ -214,24 +212,34 @@ def _last_period(
     else:
         start = part.at(np.array([begin]), in_time=True)
         state = begin, float(start.theta[0]), float(start.omega[0])
-        shares = _shares(train, ours["crank_angle"], ours["fuel"]) if "fuel" in ours else None
+        if train.combustion is not None:
+            train = _fired(train, state[1], ours["crank_angle"], ours["fuel"])
         phases, steps = part.cells[0].acting.phases, _STEPS // len(result.scene.cylinders)
-        theirs, errors = beside.integrated(train, state, (phases, shares), times, _RTOL, steps)
+        theirs, errors = beside.integrated(train, state, phases, times, _RTOL, steps)
     quantities = (*_MOTION, *_forces(result.scene))
     rows = _differences(quantities, (ours, theirs), (stated, errors), abs(part.turned))
     return rows, (begin, end)
 
 
-def _shares(train: CrankTrain, theta: Array, fuel: Array) -> Shares:
-    """The shares of the combustion over the crank angle, as they were at times close together."""
-    from crankmbs.motion.multibody.beside import Shares
+def _fired(train: CrankTrain, start: float, theta: Array, fuel: Array) -> CrankTrain:
+    """The train with the pressures of the firings that were, over the crank angles of one period:
+    those from where it starts [rad], and at places close together with their shares.
 
-    assert train.law is not None
-    order = np.argsort(theta)
-    angles = repeat(np.array(train.law.angles), train.scene.period, theta.min(), theta.max())
-    angles = np.sort(angles)
-    after = np.searchsorted(theta[order], np.append(theta.min(), angles))
-    return Shares(angles, fuel[order][after])
+    In a period each cylinder decides once, where its compression begins.
+    """
+    period, pressures = train.scene.period, []
+    low = 0.5 * (min(start, theta.min()) + max(start, theta.max()) - period)  # beyond both ends
+    gases = zip(train.scene.cylinders, train.pressure or (), train.combustion or (), strict=True)
+    ends = zip(fuel[theta.argmin()], fuel[theta.argmax()], strict=True)
+    for (cylinder, without, more), (below, above) in zip(gases, ends, strict=True):
+        first = low + cylinder.phase
+        decided, last = first + (math.pi - first) % period, first + without.period
+        inner = repeat(without.knots[:-1], without.period, first, last)
+        knots = apart(np.concatenate([[first, decided, last], inner]))
+        share = np.where(0.5 * (knots[1:] + knots[:-1]) < decided, below, above)
+        cubics = without.on(knots).coefficients + share * more.on(knots).coefficients
+        pressures.append(PeriodicPressure(knots, cubics))
+    return replace(train, pressure=tuple(pressures), combustion=None, law=None)
 
 
 def _at_states(result: Result, train: CrankTrain) -> tuple[Difference, ...]:

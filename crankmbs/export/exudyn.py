@@ -255,9 +255,9 @@ def _parameters(
     values += [
         ("OUTPUT", f"{stem}_exudyn.csv", "not the name of a table that the scene reads"),
         ("STEP", step, "s"),
-        ("STEPS", steps, ""),
+        ("STEPS", steps, "to the end"),
     ]
-    lines = [_line(*value) for value in values]
+    lines = [f"{name} = {value!r}  # {about}" for name, value, about in values]
     arrays = dict(zip(("POSITION", "VELOCITY", "ACCELERATION"), initial(train, step), strict=True))
     return "\n".join(
         [
@@ -275,12 +275,6 @@ def _mechanism(mechanism: Mechanism) -> str:
     for name, parts in list(mechanism._asdict().items())[1:]:
         rows += [f"    {name}=(", *(f"        {part!r}," for part in parts), "    ),"]
     return "\n".join([*rows, ")"])
-
-
-def _line(name: str, value: object, about: str) -> str:
-    if not name:
-        return f"# {about}" if about else ""
-    return f"{name} = {value!r}" + (f"  # {about}" if about else "")
 
 
 def _sum(scene: Scene, kind: type, name: str) -> float:

@@ -118,12 +118,12 @@ def _free(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) ->
 def _multibody(train: CrankTrain, rtol: float, cost_cap: float) -> Assembled:
     from crankmbs.motion import kinetostatic
     from crankmbs.motion.assemble import assemble
-    from crankmbs.motion.multibody import driven, free
+    from crankmbs.motion.multibody import beside, free
 
     if train.scene.motion is not None:
         sampled = kinetostatic.run(train)
         residual = sampled.samples.energy_residual
-        return _of_law(train, _closed(driven.run(train, sampled), residual))
+        return _of_law(train, _closed(beside.driven(train, sampled), residual))
     solution, kept = free.run(train, rtol, cost_cap)
     time = solution.samples.time
     residual = 0.0 * time

@@ -18,9 +18,10 @@ from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.base import State
 from crankmbs.motion.cells import cell_of
 from crankmbs.motion.mode import begun
-from crankmbs.motion.multibody.answer import Answers
+from crankmbs.motion.multibody.answer import free
 from crankmbs.motion.multibody.forces import EVERYWHERE, Limits
 from crankmbs.motion.multibody.integrate import integrate
+from crankmbs.motion.multibody.model import Model
 from crankmbs.motion.multibody.runs import motion_of
 from crankmbs.scene.scene import Scene
 from validation.adapter import reference_motion, reference_variables
@@ -92,13 +93,12 @@ def _errors(ours: Scene, theirs: Scene, count: int) -> _Errors:
     start = State(0.0, ours.start.angle, ours.start.speed, 0.0, begun(train))
     limits = Limits(float(time[-1]), EVERYWHERE, _MOST)
     steps = 2.0 * math.pi / abs(ours.start.speed) / _STEPS_PER_TURN / 2.0 ** np.arange(count)
-    with closing(Answers(train)) as answers:
-        forces, model = answers.forces, answers.model
-        paths = [integrate(forces, model, start, limits, float(step)) for step in steps]
+    with closing(Model(train)) as model:
+        paths = [integrate(model, start, limits, float(step)) for step in steps]
         angles, runs = motion.theta.astype(np.float64), []
-        for passed in (motion_of(forces, path) for path in paths):
+        for passed in (motion_of(model.forces, path) for path in paths):
             k = cell_of(np.array([piece.end.theta for piece in passed.pieces]), angles)
-            runs.append(answers.free(passed.modes, k, k, *passed.at(k, angles, in_time=False)))
+            runs.append(free(model, passed.modes, k, k, passed.at(k, angles, in_time=False)))
     turned, peak = float(np.ptp(motion.theta)), _length(exact)
     late = [(own["time"] - motion.time) * motion.omega / turned for own in runs]
     missed = [{name: own[name] - exact[name] for name in _BEARING} for own in runs]

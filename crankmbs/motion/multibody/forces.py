@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.mechanics.axes import areas, axes_of, closed_loops, displacements, slides
+from crankmbs.mechanics.forces import OnCrank
 from crankmbs.mechanics.knots import KNOT, apart, repeat
 from crankmbs.mechanics.pressure import pressures_at
 from crankmbs.mechanics.train import (
@@ -24,15 +25,14 @@ from crankmbs.mechanics.train import (
     knots_over_angle,
     times_of,
 )
-from crankmbs.mechanics.windows import Phase, Phases, phase_ends
+from crankmbs.mechanics.windows import acting, phase_ends
 from crankmbs.motion.base import State
 from crankmbs.motion.mode import Mode
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.cycle import Cycle
 from crankmbs.numerics.piecewise import Piecewise
-from crankmbs.scene.force import Law
 from crankmbs.scene.parts import Friction
-from crankmbs.scene.torque import Parts
+from crankmbs.scene.torque import Torque
 
 __all__ = ["EVERYWHERE", "Bounds", "Forces", "Limits", "Push"]
 
@@ -79,23 +79,21 @@ class Forces:
         self.train, scene = train, train.scene
         self._areas, self._crank_ends = areas(scene)
         self._phases, self._friction = axes_of(scene).phases, scene.friction or Friction()
-        knots = [crank_angle_knots(train), knots_over_angle(train)]
-        angles = apart(np.concatenate(knots))
+        angles = apart(np.concatenate([crank_angle_knots(train), knots_over_angle(train)]))
         bends = self._bends(angles)
         hard = angles[bends > _BESIDE]  # by all of a force in a radian
         self.jumps, self.smooth = angles[bends > _JUMP], len(hard) <= _MOST_CUTS
-        hard = hard if self.smooth else np.empty(0)
-        self.angles = apart(np.concatenate([hard, friction_knots(train)]))
+        self.angles = apart(np.append(hard if self.smooth else [], friction_knots(train)))
 
     def _bends(self, knots: Array) -> Array:
         """By what share of its largest value a force bends at crank angles [rad] within 1e-6."""
-        acts = np.ones((len(knots), len(self.train.loads)), dtype=bool)
 
         def forces(theta: Array, sense: float) -> Array:
-            motion = np.zeros_like(theta), theta, np.full_like(theta, sense)
-            fuel = (self.gas(theta, np.full((1, len(self._phases)), share)) for share in (0.0, 1.0))
-            of_loads = self.applied(*motion, motion[2], acts), self.torque(*motion, acts)[:, None]
-            return np.hstack([*fuel, *of_loads])
+            omega = np.full_like(theta, sense)
+            motion = np.array([np.zeros_like(theta), theta, omega])
+            torque, pushes = self.outside(Mode(), motion, omega)
+            gas = (self.gas(theta, np.array([share]))["gas_force"] for share in (0.0, 1.0))
+            return np.column_stack([*gas, pushes, torque])
 
         bends = np.zeros(len(knots))
         for sense in (1.0, -1.0):
@@ -114,38 +112,25 @@ class Forces:
         declared = (law.python.times for law in laws if law.python)
         return tuple(every.union(times_of(scene.torque), *declared))
 
-    def acting(self, phases: Phases) -> list[bool]:
-        """Which of the loads act, torques first."""
-        return [phase is Phase.ACTING for phase in phases] or [True] * len(self.train.loads)
-
-    def _laws(self, k: int, phases: Phases = ()) -> list[Law]:
-        """The forces from outside that act on the piston of the cylinder k."""
-        scene = self.train.scene
-        pairs = zip(scene.force, self.acting(phases)[len(scene.torque) :], strict=True)
-        return [force.law for force, acts in pairs if acts and force.cylinder in (None, k + 1)]
-
     # on arrays
 
-    def gas(self, theta: Array, shares: Array | None) -> Array:
-        """Gas forces [N] towards the crank at crank angles (m,), shape (m, n)."""
+    def gas(self, theta: Array, shares: Array | None) -> dict[str, Array]:
+        """Gas forces [N] towards the crank, and the pressures [Pa] of the ends of the cylinders, at
+        crank angles (m,); by variable, shape (m, n) each."""
         train, angles = self.train, np.add.outer(self._phases, theta)
         if train.pressure is None:
-            return np.zeros_like(angles.T)
-        pressure = pressures_at(train.pressure, angles).T
+            none = np.zeros_like(angles.T)
+            return {"gas_force": none, "gas_pressure": none}
+        net = pressures_at(train.pressure, angles).T
         if train.combustion is not None:
             assert shares is not None
-            pressure = pressure + shares * pressures_at(train.combustion, angles).T
-        return np.asarray(self._areas * pressure)
-
-    def pressures(self, theta: Array, gas: Array) -> dict[str, Array]:
-        """The pressures [Pa] of the ends of the cylinders under gas forces [N], by variable, shape
-        (m, n) each."""
-        ends, whole = self.train.crank_end, np.where(self._areas > 0.0, self._areas, 1.0)
-        if ends is None:
-            return {"gas_pressure": gas / whole}
-        crank_end = pressures_at(ends, np.add.outer(self._phases, theta)).T
-        head = (gas + self._crank_ends * crank_end) / whole
-        return {"gas_pressure": head, "crank_end_pressure": crank_end}
+            net = net + shares * pressures_at(train.combustion, angles).T
+        gas = self._areas * net
+        if train.crank_end is None:
+            return {"gas_force": gas, "gas_pressure": net}
+        crank_end = pressures_at(train.crank_end, angles).T
+        head = (gas + self._crank_ends * crank_end) / self._areas
+        return {"gas_force": gas, "gas_pressure": head, "crank_end_pressure": crank_end}
 
     def friction(self, theta: Array, omega: Array, gas: Array, sense: Array) -> Array:
         """Friction [N] towards the crank, shape (m, n), of pistons that slide in this sense of
@@ -156,20 +141,20 @@ class Forces:
         sliding = (-closed_loops(scene, theta).x_1 * omega).T
         return np.asarray(-dry - rubs.viscous * sliding)
 
-    def applied(self, time: Array, theta: Array, omega: Array, sense: Array, acts: Array) -> Array:
-        """Forces from outside on the pistons [N] towards the crank, shape (m, n), that slide in
-        this sense of rotation; acts : shape (m, loads), whether each does."""
-        total, first = np.zeros((len(theta), len(self._phases))), len(self.train.scene.torque)
-        for push, when in zip(self.train.pushes, acts.T[first:], strict=True):
-            total += np.where(when[:, None], push.forces(time, theta, omega, sense), 0.0)
-        return total
+    def outside(self, mode: Mode, motion: Array, sense: Array) -> tuple[Array, Array]:
+        """Torque [N m] of all torques that act, shape (m,), and forces from outside on the pistons
+        [N] towards the crank, shape (m, n), that slide in this sense of rotation.
 
-    def torque(self, time: Array, theta: Array, omega: Array, acts: Array) -> Array:
-        """Torque [N m] of all torques, shape (m,); acts : shape (m, loads), whether each does."""
-        total = np.zeros_like(theta)
-        for load, when in zip(self.train.scene.torque, acts.T, strict=False):
-            total += np.where(when, load(time, theta, omega), 0.0)
-        return total
+        motion : times [s], crank angles [rad] and speeds [rad/s], shape (3, m)
+        """
+        time, theta, omega = motion
+        torque, pushes = np.zeros_like(time), np.zeros((len(time), len(self._phases)))
+        for _, load in acting(self.train.loads, mode.loads):
+            if isinstance(load, OnCrank):
+                pushes += load.forces(time, theta, omega, sense)
+            else:
+                torque += load(time, theta, omega)
+        return torque, pushes
 
     # number by number, on one stretch
 
@@ -182,7 +167,8 @@ class Forces:
         time, theta, omega, _, mode = state
         ends = phase_ends(self.train.loads, mode.loads)
         speeds = {0.0, *ends[1]}
-        for parts in self._torques(mode):
+        for _, load in acting(self.train.scene.torque, mode.loads):
+            parts = load.parts
             speeds.update(_cuts_of(parts.over_speed) if parts.over_speed else ())
             speeds.update(parts.function.speeds if parts.function else ())
         at = theta + 2.0 * KNOT * math.copysign(1.0, omega or sense)
@@ -194,31 +180,24 @@ class Forces:
             _around(speeds, omega, sense),
         )
 
-    def _torques(self, mode: Mode) -> list[Parts[Cycle]]:
-        """What the torques that act are the sums of."""
-        pairs = zip(self.train.scene.torque, self.acting(mode.loads), strict=False)
-        return [torque.parts for torque, acts in pairs if acts]
-
     def load(self, bounds: Bounds, mode: Mode) -> Callable[[float, float, float], float]:
         """Torque [N m] of the loads that act, of time [s], crank angle [rad] and speed [rad/s]."""
-        parts = self._torques(mode)
-        terms = [
-            (slot, part.by_number(*bounds[slot]))
-            for each in parts
-            for slot, part in enumerate((each.over_time, each.over_angle, each.over_speed))
-            if part is not None
-        ]
+        loads = (load for _, load in acting(self.train.loads, mode.loads))
+        parts = [load.parts for load in loads if isinstance(load, Torque)]
+        by_each = ((each.over_time, each.over_angle, each.over_speed) for each in parts)
+        terms = [term for each in by_each for term in _terms(each, bounds)]
         return _total(terms, [each.function.number for each in parts if each.function])
 
     def pushes(self, bounds: Bounds, mode: Mode, theta: float, sense: float) -> list[Push]:
         """For each cylinder the force of gas, friction and from outside towards the crank, beyond a
         crank angle [rad] in a sense of rotation."""
-        at = np.array([theta + _BESIDE * sense])
-        loop = closed_loops(self.train.scene, at)
-        ways = zip(
-            displacements(self.train.scene, loop)[:, 0], -sense * loop.x_1[:, 0], strict=True
-        )
-        return [self._push(k, *way, bounds, mode) for k, way in enumerate(ways)]
+        scene = self.train.scene
+        loop = closed_loops(scene, np.array([theta + _BESIDE * sense]))
+        down, slides = displacements(scene, loop)[:, 0].tolist(), -sense * loop.x_1[:, 0]
+        return [
+            self._push(k, *at, bounds, mode)
+            for k, at in enumerate(zip(down, slides.tolist(), strict=True))
+        ]
 
     def _push(self, k: int, displacement: float, slides: float, bounds: Bounds, mode: Mode) -> Push:
         """That on the piston of the cylinder k, which is there and slides with this sign."""
@@ -226,14 +205,14 @@ class Forces:
         viscous, whole = rubs.viscous, list[Push]()
         gas = self._gas(k, mode.shares).by_number(*bounds.angles)
         terms = [(1, gas)]
-        for law in self._laws(k, mode.loads):
+        for _, load in acting(self.train.loads, mode.loads):
+            if not isinstance(load, OnCrank) or not load.pistons[k]:
+                continue
+            law = load.force.law
             way = law.forward if slides > 0.0 else law.back
             travel = _around(_cuts_of(way), displacement) if way else EVERYWHERE
             over_angle = law.over_angle and _turned(law.over_angle, phase)
-            ranges = *bounds[:2], travel
-            for slot, part in enumerate((law.over_time, over_angle, way)):
-                if part is not None:
-                    terms.append((slot, part.by_number(*ranges[slot])))
+            terms += _terms((law.over_time, over_angle, way), (*bounds[:2], travel))
             viscous += law.viscous
             if law.python is not None:
                 whole.append(_at_cycle_angle(law.python.function, phase))
@@ -265,13 +244,18 @@ def _at_cycle_angle(function: Push, phase: float) -> Push:
     return lambda time, theta, s, v: function(time, theta + phase, s, v)
 
 
+def _terms(
+    parts: Sequence[Piecewise | Cycle | None], ranges: Sequence[Range]
+) -> list[tuple[int, Callable[[float], float]]]:
+    """Functions of one argument, by its number, that go on beyond their range as in it."""
+    pairs = enumerate(zip(parts, ranges, strict=True))
+    return [(slot, part.by_number(*ends)) for slot, (part, ends) in pairs if part is not None]
+
+
 def _total(
     terms: list[tuple[int, Callable[[float], float]]], whole: Sequence[Callable[..., float]]
 ) -> Callable[..., float]:
     """The sum of functions of one argument, by its number, and of all."""
-    if len(terms) == 1 and not whole:
-        slot, alone = terms[0]
-        return lambda *at: alone(at[slot])
 
     def total(*at: float) -> float:
         value = 0.0

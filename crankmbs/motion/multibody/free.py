@@ -17,9 +17,10 @@ from crankmbs.motion.base import Solution, State
 from crankmbs.motion.cells import cell_of
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.mode import begun
-from crankmbs.motion.multibody.answer import Answers, solution
+from crankmbs.motion.multibody.answer import free, solution
 from crankmbs.motion.multibody.cost import STEPS_A_SECOND
 from crankmbs.motion.multibody.forces import Limits
+from crankmbs.motion.multibody.model import Model
 from crankmbs.motion.multibody.runs import Motion, Runs
 from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.numerics.arrays import Array
@@ -81,21 +82,19 @@ def run(train: CrankTrain, rtol: float, cost_cap: float) -> tuple[Solution, Kept
 
         return plan.samples(pairwise(times.tolist()), angle, passed, ends[-1].theta)
 
-    with closing(Answers(train)) as answers:
-        runs = Runs(answers.forces, answers.model, start, limits)
-        values, errors, why = refined(runs, answers, rtol, places, by_angle=not plan.in_time)
+    with closing(Model(train)) as model:
+        runs = Runs(model, start, limits)
+        values, errors, why = refined(runs, rtol, places, by_angle=not plan.in_time)
     status, message = _ended(runs, plan, cost_cap)
     if runs.moves and not (worst := _worst(values, errors)) <= rtol:
         message += _shortfall(worst, rtol, why, runs.steps / rate, cost_cap)
     cost = sum(path.iterations for path in runs.paths), runs.steps
-    motions = runs.motions if runs.moves else ()
-    return solution(values, errors, (status, message), cost), Kept(
-        train, start, motions, runs.ending
-    )
+    kept = Kept(train, start, runs.motions, runs.ending)
+    return solution(values, errors, (status, message), cost), kept
 
 
 def refined(
-    runs: Runs, answers: Answers, rtol: float, places: Places, *, by_angle: bool
+    runs: Runs, rtol: float, places: Places, *, by_angle: bool
 ) -> tuple[Values, Errors, str]:
     """The values and errors of runs fine enough, and why they are not what was asked for.
 
@@ -106,22 +105,20 @@ def refined(
     if not runs.moves:
         rows = np.array(runs.start[:3])[:, np.newaxis]
         only = np.zeros(1, dtype=np.intp)
-        return answers.free([runs.start.mode], only, only, *rows), _NO_ERRORS, ""
+        return free(runs.model, [runs.start.mode], only, only, rows), _NO_ERRORS, ""
     for few in (True, False):
-        values, errors = _checked(runs, answers, places, few=few, by_angle=by_angle)
+        values, errors = _checked(runs, places, few=few, by_angle=by_angle)
         while finer and runs.affords_another and not _worst(values, errors) <= rtol:
             if runs.rounded:
                 finer, why = False, _ROUNDED
             elif runs.halve():
-                values, errors = _checked(runs, answers, places, few=few, by_angle=by_angle)
+                values, errors = _checked(runs, places, few=few, by_angle=by_angle)
             else:
                 finer, why = False, _NO_FINER
     return values, errors, why
 
 
-def _checked(
-    runs: Runs, answers: Answers, places: Places, *, few: bool, by_angle: bool
-) -> tuple[Values, Errors]:
+def _checked(runs: Runs, places: Places, *, few: bool, by_angle: bool) -> tuple[Values, Errors]:
     """The variables at samples, the last at the end, and what they change by in the motions that
     check the answer, at the same angles or times, and from end to end."""
     answer, *checks = runs.motions
@@ -132,7 +129,8 @@ def _checked(
     omega = answer.at(k, time, in_time=True)[2]
     omega[time == runs.start.time] = runs.start.omega
     omega[-1] = answer.pieces[-1].end.omega
-    values = answers.free(answer.modes, k, answer.after(time), time, theta, omega)
+    motion = np.array([time, theta, omega])
+    values = free(runs.model, answer.modes, k, answer.after(time), motion)
     errors = dict.fromkeys(values, 0.0 if checks else math.inf)
     for check in checks:
         then = cell_of(check.ends, time)
@@ -141,7 +139,7 @@ def _checked(
         if by_angle and len(check.pieces) == len(answer.pieces):
             then, at = k, check.at(k, theta, in_time=False)
         at[:, -1] = check.pieces[-1].end[:3]
-        after = answers.free(check.modes, then, check.after(at[0]), *at)
+        after = free(runs.model, check.modes, then, check.after(at[0]), at)
         errors = {n: max(most, peak(after[n] - values[n])) for n, most in errors.items()}
         errors["crank_angle"] = max(errors["crank_angle"], late)
     return values, errors
@@ -155,9 +153,9 @@ def _worst(values: Values, errors: Errors) -> float:
 
 def _ended(runs: Runs, plan: Plan, cap: float) -> tuple[int, str]:
     """Status and sentence."""
-    time, theta, omega = runs.end[:3]
+    time, theta, omega = runs.paths[-1].end[:3]
     ending = runs.ending
-    if ending is Ending.HELD and runs.forces.train.scene.friction and omega == 0.0:
+    if ending is Ending.HELD and runs.model.forces.train.scene.friction and omega == 0.0:
         ending = Ending.STICKS
     elif ending is Ending.COMPLETE and plan.folds_at(theta):
         ending = Ending.FOLD

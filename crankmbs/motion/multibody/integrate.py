@@ -17,7 +17,7 @@ from scipy.interpolate import CubicHermiteSpline
 from crankmbs.motion.base import State
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.mode import decided
-from crankmbs.motion.multibody.forces import Bounds, Forces, Limits
+from crankmbs.motion.multibody.forces import Bounds, Limits
 from crankmbs.motion.multibody.model import Model
 from crankmbs.numerics.arrays import Array
 
@@ -63,7 +63,7 @@ class Path(NamedTuple):
 
 
 def integrate(
-    forces: Forces, model: Model, start: State, limits: Limits, step: float, *, stiff: bool = False
+    model: Model, start: State, limits: Limits, step: float, *, stiff: bool = False
 ) -> Path:
     """Run from a state with steps of a length [s].
 
@@ -71,17 +71,22 @@ def integrate(
     """
     state, stretches = start, list[Stretch]()
     sense, steps, iterations, idle = 0.0, 0, 0, 0
+    train = model.forces.train
+    steady = all(load.is_steady for load in train.loads)
     ending = Ending.COMPLETE
     while (
         ending is Ending.COMPLETE
         and state.time < limits.time * (1.0 - _SAME)
         and state.theta not in limits.angles
     ):
-        entered = enter(model, forces, state, sense, limits)
+        entered = enter(model, state, sense, limits)
         if entered is None or idle > 1 or steps >= limits.steps:
             ending = Ending.CALLED_OFF if entered and idle <= 1 else Ending.HELD
             break
-        bounds, _ = entered
+        bounds, alpha = entered
+        if not stretches and state.omega == 0.0 and abs(alpha) <= _STILL and steady:
+            ending = Ending.UNMOVED
+            break
         rows, ending, cost = model.run(state[:3], step, limits.steps - steps, bounds, stiff=stiff)
         steps, iterations = steps + len(rows) + _ENTRY, iterations + cost
         if ending is Ending.COMPLETE:
@@ -92,12 +97,12 @@ def integrate(
             stretches.append(Stretch(state, rows))
         state = State(time, theta, omega, 0.0, state.mode)
         if ending is Ending.COMPLETE:
-            state = state._replace(mode=decided(forces.train, state.mode, time, theta, omega))
+            state = state._replace(mode=decided(train, state.mode, time, theta, omega))
     return Path(tuple(stretches), state, ending, steps, iterations)
 
 
 def enter(
-    model: Model, forces: Forces, state: State, arrived: float, limits: Limits
+    model: Model, state: State, arrived: float, limits: Limits
 ) -> tuple[Bounds, float] | None:
     """Give the model the forces beside a state on the side to which it moves.
 
@@ -108,7 +113,7 @@ def enter(
     the bounds of the stretch and the crank's acceleration [rad/s2] at its begin; None where the
     forces drive the crank back from both sides
     """
-    _, theta, omega, _, mode = state
+    forces, (_, theta, omega, _, mode) = model.forces, state
     at, refused = [np.array([each]) for each in state[:3]], 0
     for sense in (arrived, -arrived) if arrived else (1.0, -1.0):
         bounds = forces.bounds(state, sense, limits)

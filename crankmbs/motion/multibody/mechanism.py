@@ -104,8 +104,8 @@ def marker(system: Any, body: int, place: tuple[float, float] = (0.0, 0.0)) -> i
     return int(system.AddMarker(item))
 
 
-def add_body(system: Any, body: Body, gravity: tuple[float, float]) -> tuple[int, int]:
-    """Add a body with its weight; its node and itself, by exudyn's numbers."""
+def add_body(system: Any, body: Body, gravity: tuple[float, float]) -> int:
+    """Add a body with its weight and its node, which have the same number."""
     if body.inertia is None:
         node = system.AddNode(eii.NodePoint2D())
         item = eii.ObjectMassPoint2D(nodeNumber=node, mass=body.mass)
@@ -115,7 +115,7 @@ def add_body(system: Any, body: Body, gravity: tuple[float, float]) -> tuple[int
     number = system.AddObject(item)
     centre = system.AddMarker(eii.MarkerBodyMass(bodyNumber=number))
     system.AddLoad(eii.Gravity(markerNumber=centre, loadVector=[*gravity, 0.0]))
-    return node, number
+    return int(number)
 
 
 def build(
@@ -130,28 +130,28 @@ def build(
     """
     container = exu.SystemContainer()
     system = container.AddSystem()
-    nodes = {"ground": system.AddNode(eii.NodePointGround())}
-    bodies = {"ground": system.AddObject(eii.ObjectGround())}
+    system.AddNode(eii.NodePointGround())
+    numbers = {"ground": int(system.AddObject(eii.ObjectGround()))}
     for body in mechanism.bodies:
-        nodes[body.name], bodies[body.name] = add_body(system, body, mechanism.gravity)
+        numbers[body.name] = add_body(system, body, mechanism.gravity)
     for hinge in mechanism.hinges:
         pairs = zip(hinge.bodies, hinge.points, strict=True)
-        ends = [marker(system, bodies[name], point) for name, point in pairs]
+        ends = [marker(system, numbers[name], point) for name, point in pairs]
         system.AddObject(eii.RevoluteJoint2D(markerNumbers=ends))
-    for number, guide in enumerate(mechanism.guides):
+    for k, guide in enumerate(mechanism.guides):
         ends = [
-            system.AddMarker(eii.MarkerNodeCoordinates(nodeNumber=nodes[name]))
+            system.AddMarker(eii.MarkerNodeCoordinates(nodeNumber=numbers[name]))
             for name in ("ground", guide.body)
         ]
         wall = {"scalingMarker1": np.array([guide.normal]), "offset": [guide.offset]}
         system.AddObject(eii.CoordinateVectorConstraint(markerNumbers=ends, **wall))
         if push is not None:
             force = eii.LoadForceVector(
-                markerNumber=marker(system, bodies[guide.body]),
-                loadVectorUserFunction=lambda _, time, load, k=number: [*push(k, time), 0.0],
+                markerNumber=marker(system, numbers[guide.body]),
+                loadVectorUserFunction=lambda _, time, load, k=k: [*push(k, time), 0.0],
             )
             system.AddLoad(force)
-    crank = eii.MarkerNodeCoordinate(nodeNumber=nodes["crank"], coordinate=2)
+    crank = eii.MarkerNodeCoordinate(nodeNumber=numbers["crank"], coordinate=2)
     turn = eii.LoadCoordinate(
         markerNumber=system.AddMarker(crank),
         loadUserFunction=lambda _, time, load: torque(time),

@@ -17,12 +17,12 @@ import numpy as np
 
 from crankmbs.mechanics.axes import closed_loops, displacements
 from crankmbs.mechanics.geometry import top_position
+from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.multibody.forces import Bounds, Push
+from crankmbs.motion.multibody.forces import Bounds, Forces, Push
 from crankmbs.motion.multibody.generalized_alpha import quiet_shifts, settings_of
 from crankmbs.motion.multibody.mechanism import build, closed, mechanism_of
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.scene import Scene
 
 __all__ = ["Consistent", "Model"]
 
@@ -54,31 +54,24 @@ class Consistent(NamedTuple):
     torque: Array
 
 
-class Run(NamedTuple):
-    """Rows of time [s], crank angle [rad], speed [rad/s] and acceleration [rad/s2], shape (m, 4).
-
-    ending : COMPLETE where a bound was passed, CALLED_OFF after all steps, DIVERGED where exudyn
-        failed or a rod turned over; iterations : of Newton's method
-    """
-
-    rows: Array
-    ending: Ending
-    iterations: int
-
-
 class Model:
-    """A scene in exudyn. Set its forces, then run it from a state, or solve for states.
+    """A crank train in exudyn. Set its forces, then run it from a state, or solve for states.
 
+    forces : of the train
     torque [N m] : on a free crank, of time [s], crank angle [rad] and speed [rad/s]
+    driven : whether the crank turns at constant speed instead
     pushes [N] : on each piston towards the crank, of time, crank angle, and of the piston's
         displacement from its top dead centre [m] and velocity in that direction [m/s]
     mass, weight : shape (q,), of each coordinate, as exudyn has it
+    tops [m], banks [rad] : of the cylinders
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, train: CrankTrain) -> None:
+        scene, self.forces = train.scene, Forces(train)
         self.scene, self.mechanism = scene, mechanism_of(scene)
         self.torque: Callable[[float, float, float], float] = lambda time, theta, omega: 0.0
         self.pushes: Sequence[Push] = ()
+        self.driven = False
         self._begin, self._largest = 0.0, 1.0
         pushed = bool(scene.gas or scene.friction or scene.force)
         self._container, self._system = build(
@@ -91,7 +84,8 @@ class Model:
             data.GetODE2Coordinates_t(copy=False),
             data.GetODE2Coordinates_tt(copy=False),
         )
-        self._tops = [top_position(*gear.shape) for gear in scene.running_gear]
+        self.tops = [top_position(*gear.shape) for gear in scene.running_gear]
+        self.banks = np.array([cylinder.bank for cylinder in scene.cylinders])
         self._towards = [(-guide.normal[1], guide.normal[0]) for guide in self.mechanism.guides]
         self._read()
 
@@ -107,41 +101,37 @@ class Model:
     def _push(self, k: int, time: float) -> tuple[float, float]:
         (x, y), at = self._towards[k], 6 + 5 * k
         speed = x * self._v.item(at) + y * self._v.item(at + 1)
-        down = self._tops[k] + x * self._q.item(at) + y * self._q.item(at + 1)
+        down = self.tops[k] + x * self._q.item(at) + y * self._q.item(at + 1)
         force = self.pushes[k](self._begin + time, self._q.item(2), down, speed)
         return force * x, force * y
 
     # over time
 
-    def start(self, time: Array, theta: Array, omega: Array, *, driven: bool = False) -> Consistent:
-        """The system in states of shape (m,), free or at constant speed, under the forces that it
-        was given."""
+    def start(self, time: Array, theta: Array, omega: Array) -> Consistent:
+        """The system in states of shape (m,), under the forces that it was given."""
         loop = closed_loops(self.scene, theta)
         down, speeds = displacements(self.scene, loop), -loop.x_1 * omega
-        push = np.zeros_like(down.T)
+        push, drive = np.zeros_like(down.T), np.zeros_like(theta)
         for k, force in enumerate(self.pushes):
-            push[:, k] = [*map(force, *(row.tolist() for row in (time, theta, down[k], speeds[k])))]
-        drive = np.zeros_like(theta)
-        if not driven:
-            drive[:] = [*map(self.torque, time.tolist(), theta.tolist(), omega.tolist())]
-        return self.states(theta, omega, push, drive, free=not driven)
+            push[:, k] = np.frompyfunc(force, 4, 1)(time, theta, down[k], speeds[k])
+        if not self.driven:
+            drive[:] = np.frompyfunc(self.torque, 3, 1)(time, theta, omega)
+        return self.states(theta, omega, push, drive, free=not self.driven)
 
     def quiet_start(
-        self, state: tuple[float, float, float], step: float, *, driven: bool = False
+        self, state: tuple[float, float, float], step: float
     ) -> tuple[tuple[float, float], Consistent]:
         """Speed and acceleration of the crank in the method's own smooth solution, and the state
         with position, velocity and acceleration from which the multipliers do not ring.
 
         A run that began with the speed v itself would have between its first two rows an error that
         does not fall as h^2 at a fixed time.
-
-        driven : at constant speed
         """
         time, theta, omega = state
-        here = self.start(*(np.array([each]) for each in state), driven=driven)
+        here = self.start(*(np.array([each]) for each in state))
         alpha, t = here.acceleration.item(2), np.array([-0.5, 0.5]) * step
         beside = time + t, theta + (omega + 0.5 * alpha * t) * t, omega + alpha * t
-        before, after = self.start(*beside, driven=driven).acceleration
+        before, after = self.start(*beside).acceleration
         crank, *shifts = quiet_shifts((after - before) / step, step)
         smooth = omega + float(crank[2]) if omega else 0.0  # at rest it is not to turn back
         q, v, a = (rows + shift for rows, shift in zip(here[:3], shifts, strict=True))
@@ -155,14 +145,20 @@ class Model:
         bounds: Bounds,
         *,
         stiff: bool,
-    ) -> Run:
+    ) -> tuple[Array, Ending, int]:
         """Integrate from a time [s], angle [rad], speed [rad/s] by the generalized-alpha method.
 
         most : steps; bounds : the step that passes one is the last; stiff : whether Newton's method
             shall know how the loads change; 2.7 times as slow
+
+        Returns
+        -------
+        rows of time [s], crank angle [rad], speed [rad/s] and acceleration [rad/s2], shape (m, 4);
+        COMPLETE where a bound was passed, CALLED_OFF after all steps, DIVERGED where exudyn failed
+        or a rod turned over; iterations of Newton's method
         """
         rows: list[tuple[float, float, float, float]] = []
-        rods = [(5 + 5 * k, c.bank) for k, c in enumerate(self.scene.cylinders)]
+        rods = [*zip(self._turns.tolist()[1:], self.banks.tolist(), strict=True)]
         (_, end), (low, high), (slow, fast) = bounds
         low, high = low - _ON, high + _ON
         slow -= _BESIDE * max(abs(slow), 1.0) + _ROUNDED / step
@@ -194,7 +190,7 @@ class Model:
             self._system.SolveDynamic(settings)
         iterations = int(self._system.sys["dynamicSolver"].it.newtonStepsCount)
         ending = Ending.CALLED_OFF if len(rows) == most else Ending.DIVERGED
-        return Run(np.array(rows), Ending.COMPLETE if outside else ending, iterations)
+        return np.array(rows), Ending.COMPLETE if outside else ending, iterations
 
     # at given states
 

@@ -29,7 +29,6 @@ __all__ = ["Motion", "Piece", "Runs", "motion_of"]
 _RETRIES = 4  # with a quarter of the step each time, where exudyn fails
 _UNTOUCHED = 0.98  # of the time to where it fails: before it goes wrong
 _EPS = float(np.finfo(float).eps)
-_STUCK = 1e-9  # rad/s2
 _SHAKEN = 1e-12  # of the crank angle: how far off a run begins that shows what rounding grows to
 _SAME = 1e-11  # relative: times nearer than this are one
 _STEPS = 4  # in a cell
@@ -43,8 +42,8 @@ class Piece(NamedTuple):
 
     begin: State
     end: State
-    decisions: tuple[State, ...]
     cells: Cells
+    decisions: tuple[State, ...] = ()
 
 
 class Motion(NamedTuple):
@@ -87,21 +86,19 @@ def motion_of(
 ) -> Motion:
     """The motion of a run; or with its decisions that of a table as `_table` gives it."""
     places = _places(path) if places is None else places
-    edges = np.cumsum([0, *map(len, places)])
     table = _table(path, places) if table is None else table
+    parts = np.split(table, np.cumsum([len(each) for each in places[:-1]]), axis=1)
     begin, pieces = path.stretches[0].begin, list[Piece]()
     after = [*(stretch.begin for stretch in path.stretches[1:]), path.end]
-    for stretch, (low, high), last in zip(path.stretches, pairwise(edges), after, strict=True):
-        time, angle, speed = table[:, low:high]
+    for stretch, (time, angle, speed), last in zip(path.stretches, parts, after, strict=True):
         mode, sense = stretch.begin.mode, float(np.sign(angle[-1, -1] - angle[0, 0]))
-        shares, acts = np.array([mode.shares]), np.array([forces.acting(mode.loads)])
-        acting = Acting(sense, phases=mode.loads)
-        cells = Cells(time, angle, speed, acting, shares.repeat(len(time), axis=0))
+        shares = np.array([mode.shares]).repeat(len(time), axis=0)
+        cells = Cells(time, angle, speed, Acting(sense, phases=mode.loads), shares)
         inside = cells.inner_reader()  # at its ends loads may jump
-        at = inside(time), inside(angle), inside(speed)
-        outside = forces.torque(*at, acts.repeat(time.size, axis=0)).reshape(time.shape)
+        at = np.array([inside(time), inside(angle), inside(speed)])
+        outside = forces.outside(mode, at, at[2])[0].reshape(time.shape)
         end = last._replace(time=time.item(-1), theta=angle.item(-1), omega=speed.item(-1))
-        pieces.append(Piece(begin, end, (), replace(cells, outside=outside)))
+        pieces.append(Piece(begin, end, replace(cells, outside=outside)))
         begin = end
     return Motion(tuple(pieces))
 
@@ -132,28 +129,23 @@ def _table(path: Path, places: list[Array]) -> Array:
 class Runs:
     """Runs of one problem at halved steps, coarsest first.
 
-    moves : False where the crank stays at rest
-    ending : of the runs, once the first is made
+    moves : False where the crank stays at rest; ending : of the runs
     shaken : the coarsest run again, from a start that is hardly off
     motions : the answer, and motions as far off as it may be; of one run none
     rounded : whether rounding has grown beyond what the steps err by
     """
 
     shaken: Path
+    ending: Ending
+    moves: bool
     motions: tuple[Motion, ...] = ()
     rounded = False
 
-    def __init__(self, forces: Forces, model: Model, start: State, limits: Limits) -> None:
-        self.forces, self.model, self.start = forces, model, start
+    def __init__(self, model: Model, start: State, limits: Limits) -> None:
+        self.model, self.start = model, start
         self._limits, self._stiff = limits, False
         self.paths = list[Path]()
-        self._step, self.moves = self._coarsest()
-        self.ending = Ending.COMPLETE if self.moves else Ending.UNMOVED
-
-    @property
-    def end(self) -> State:
-        """Where the finest run ends."""
-        return self.paths[-1].end if self.paths else self.start
+        self._step = self._coarsest()
 
     @property
     def steps(self) -> int:
@@ -168,12 +160,11 @@ class Runs:
         ------
         FormulationError : exudyn cannot take a single step
         """
-        if not self.moves:
-            return False
         path = self._coarse()
         self.ending, reached = path.ending, path.end
         self.moves = bool(path.stretches)
-        if not self.moves and (path.ending is not Ending.HELD or self.start.omega):
+        rests = path.ending in (Ending.UNMOVED, Ending.HELD) and self.start.omega == 0.0
+        if not self.moves and not rests:
             why = _HELD if path.ending is Ending.HELD else _NO_STEP
             raise FormulationError(
                 f"formulation 'multibody' cannot serve this scene: {why} at its start; choose auto"
@@ -187,7 +178,7 @@ class Runs:
             return False
         off = math.copysign(_SHAKEN * (1.0 + abs(there)), reached.theta - there)
         self.shaken = self._run(start=self.start._replace(theta=there + off))
-        self.motions = (motion_of(self.forces, path),)
+        self.motions = (motion_of(self.model.forces, path),)
         return self.halve() and self.halve()
 
     def _coarse(self) -> Path:
@@ -219,7 +210,7 @@ class Runs:
     def _run(self, most: int | None = None, start: State | None = None) -> Path:
         limits = self._limits if most is None else self._limits._replace(steps=most)
         begin, stiff = start or self.start, self._stiff
-        return integrate(self.forces, self.model, begin, limits, self._step, stiff=stiff)
+        return integrate(self.model, begin, limits, self._step, stiff=stiff)
 
     @property
     def affords_another(self) -> bool:
@@ -237,7 +228,7 @@ class Runs:
         what the rounding of all steps grows to, as they do at random. A run that is cut another
         number of times than the finest is compared as it is.
         """
-        forces, fine = self.forces, self.paths[-1]
+        forces, fine = self.model.forces, self.paths[-1]
         alike = [path for path in self.paths if len(path.stretches) == len(fine.stretches)]
         if self.paths[-2] is not alike[-2:][0]:
             return motion_of(forces, fine), motion_of(forces, self.paths[-2])
@@ -259,24 +250,20 @@ class Runs:
         pairs = [(fine, answer), *((self.paths[-2], each) for each in checks)]  # with its decisions
         return tuple(motion_of(forces, path, each, places) for path, each in pairs)
 
-    def _coarsest(self) -> tuple[float, bool]:
-        """A step [s] to begin with, and whether the crank will move at all.
+    def _coarsest(self) -> float:
+        """A step [s] to begin with.
 
         It resolves a turn at the speed at the start, or from rest at that after one turn at the
         first acceleration.
         """
         speed, end = abs(self.start.omega), self._limits.time
-        moves = True
         if speed == 0.0:
-            nowhere = Limits(math.inf, (-math.inf, math.inf), 0)
-            entered = enter(self.model, self.forces, self.start, 0.0, nowhere)
+            entered = enter(self.model, self.start, 0.0, self._limits)
             alpha = abs(entered[1]) if entered else 0.0
-            steady = all(load.is_steady for load in self.forces.train.loads)
-            moves = entered is None or alpha > _STUCK or not steady
             speed = min(math.sqrt(4.0 * math.pi * alpha), alpha * end)
         turn = 2.0 * math.pi / speed if speed > 0.0 else math.inf
         longest = 1.0 if math.isinf(end) else end - self.start.time
-        return min(turn, longest) / STEPS_A_TURN, moves
+        return min(turn, longest) / STEPS_A_TURN
 
 
 def _largest(off: Array, motion: Array) -> Array:
