@@ -23,7 +23,7 @@ SLIDE: Any = {
     "legend.borderaxespad": 0.0,
     "lines.linewidth": 3.0,
 }
-_TOP = 0.878  # of the height: the headline's foot
+_TOP = 0.875  # of the height: the headline's foot
 _LETTERS = 66  # in a line of the headline
 
 
