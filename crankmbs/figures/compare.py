@@ -25,8 +25,17 @@ from crankmbs.compare import (
     short_name,
 )
 from crankmbs.figures.headline import budget_headline, comparison_headline
-from crankmbs.figures.slide import SLIDE, slide, slide_legend
-from crankmbs.figures.style import crank_axis, footer, force_scale, grouped, line_of, save
+from crankmbs.figures.slide import SIZE, SLIDE, head
+from crankmbs.figures.style import (
+    crank_axis,
+    footer,
+    force_scale,
+    grouped,
+    legend,
+    line_of,
+    panels,
+    save,
+)
 from crankmbs.figures.view import error_words, last_view
 from crankmbs.numerics.arrays import Array
 from crankmbs.storage.files import together
@@ -204,7 +213,7 @@ def _figure(
     styles = _STYLES | {label: line_of(_USER + k) for k, label in enumerate(users)}
     if _SUM in labels:  # beside causes, which have all the colours, a formula is drawn as Yi's is
         styles |= dict.fromkeys(users, _STYLES[_BY_YI])
-    figure, axes = slide(n, headline, [label for label in styles if label in labels])
+    figure, axes = panels(2, n, *SIZE, height_ratios=(1.0, 2.0))
     view = last_view(excerpt.result)
     degrees = view.degrees[excerpt.samples - excerpt.window.first]
     several = len(excerpt.result.scene.cylinders) > 1
@@ -219,12 +228,8 @@ def _figure(
         if n > 1:
             title = f"{name} ${symbol}$" if symbol else name
             top.set_title(title, loc="left", pad=8.0 + 21.0 * above)
-    lines = {str(line.get_label()): line for ax in axes for line in ax.lines}
-    slide_legend(figure, {label: lines[label] for label in styles if label in labels})
-    grid = axes[0].get_gridspec()
-    assert grid is not None
-    grid.set_height_ratios((1.0, 2.0))
-    figure.align_ylabels(axes)
+    legend(figure, *axes)
+    head(figure, headline)
     of = f", cylinder {excerpt.cylinder}" if of_one else ""
     exact = error_words(excerpt.result.error.estimated)
     footer(figure, excerpt.result, f"{about}{of}, over the {view.window.kind}", exact)

@@ -79,7 +79,6 @@ def cycles_figure(result: Result) -> Figure:
         ax.locator_params("x", integer=True)
     axes[-1].set_xlabel("cycle")
     legend(figure, *(axes if double or len(result.scene.cylinders) > 1 else axes[:1]))
-    figure.align_ylabels(axes)
     drawn = ["mean_speed", "least_speed", "largest_speed", *names]
     about = "crank speed and mean effective pressure" if names else "crank speed"
     footer(figure, result, f"{about}, cycle by cycle", exactness(cycles.variables, *drawn))
@@ -161,7 +160,6 @@ def transient_figure(result: Result) -> Figure:
         mark_events(axes[0], named, np.array([mark.time for mark in named]))
     axes[-1].set_xlabel("time [s]")
     legend(figure, *axes[1:])
-    figure.align_ylabels(axes)
     drawn = "crank_speed", "crank_torque", "external_torque", *_JOINTS.values()
     about = "crank speed, torque on the crank and bearing loads over the whole run"
     footer(figure, result, about, exactness(result.variables, *drawn))

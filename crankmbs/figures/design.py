@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from crankmbs.design import Balance, Flywheel
 from crankmbs.digits import error_digits
 from crankmbs.figures.polar import ENGINE, draw_polar
 from crankmbs.figures.style import (
@@ -25,6 +25,9 @@ from crankmbs.figures.view import exactness
 from crankmbs.measures import EngineOrders, last_span
 from crankmbs.mechanics.peaks import negligible
 from crankmbs.result import Result
+
+if TYPE_CHECKING:
+    from crankmbs.design import Balance, Flywheel
 
 __all__ = [
     "balance_figure",
@@ -134,7 +137,6 @@ def orders_figure(result: Result, orders: EngineOrders) -> Figure:
         ax.set_ylabel(f"{row.quantity}\n[{row.units}]")
     axes[-1].set_xlabel("order [1/revolution]")
     legend(figure, axes[-1])
-    figure.align_ylabels(axes)
     nothing = f" ({', '.join(sorted(zero))}: zero but for rounding)" if zero else ""
     shares = [row.orders.error / largest[row.quantity] for row in rows if largest[row.quantity]]
     worst = error_digits(100.0 * max(shares, default=0.0))

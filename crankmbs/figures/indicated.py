@@ -64,15 +64,13 @@ def volume_figure(indicated: Indicated) -> Figure:
         if with_log:
             axes[1].loglog(shape.volume(angle), np.maximum(mean, 1e-3), **line_of(k))
     axes[0].set_xlabel("piston displacement from TDC over the stroke [1]")
-    axes[0].set_ylabel(_pressure(indicated))
+    for ax in axes:
+        ax.set_ylabel(_pressure(indicated))
     if with_log:
         axes[1].set_xlabel("volume over the clearance volume [1]")
-        axes[1].set_ylabel(_pressure(indicated))
         logarithmic(axes[1].xaxis)
         logarithmic(axes[1].yaxis)
-    handles, labels = axes[0].get_legend_handles_labels()
-    columns = 2 if with_log and len(labels) > 1 else 1
-    figure.legend(handles, labels, loc="outside upper center", ncols=columns)
+    legend(figure, axes[0])
     about = f"{_which(indicated)} of each cylinder; imep: indicated mean effective pressure"
     _footer(figure, indicated, about)
     return figure
@@ -96,7 +94,6 @@ def scatter_figure(indicated: Indicated) -> Figure:
     for ax in axes:
         ax.locator_params("x", integer=True)
     axes[-1].set_xlabel("cycle")
-    figure.align_ylabels(axes)
     legend(figure, axes[0])
     about = "peak and mean effective pressure" if with_imep else "peak pressure"
     _footer(figure, indicated, f"{about} of each measured cycle")

@@ -223,5 +223,4 @@ def _label(ax: Axes, marks: list[_Mark], at: float, side: float, span: float) ->
             va="center",
             fontsize=12,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
-            in_layout=False,  # it stands inside the panel
         )

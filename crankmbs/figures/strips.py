@@ -86,7 +86,6 @@ def piston_motion_figure(view: View) -> Figure:
         ax.set_ylabel(label)
     crank_axis(axes, view)
     legend(figure, axes[0])
-    figure.align_ylabels(axes)
     about = f"piston motion over the {view.window.kind}"
     footer(figure, view.result, about, view.exactness(*(name for name, _, _ in rows)))
     return figure
@@ -108,7 +107,6 @@ def forces_figure(view: View) -> Figure:
         ax.set_ylabel(f"{label} [{unit}]")
     crank_axis(axes, view)
     legend(figure, axes[0])
-    figure.align_ylabels(axes)
     forces = " and ".join(force for force, _ in names.values())
     footer(figure, view.result, f"{forces} over the {view.window.kind}", view.exactness(*names))
     return figure
@@ -176,7 +174,7 @@ def indicator_figure(view: View) -> Figure:
     volumes = {end: 1e6 * displacement * np.array(areas) for end, (_, areas) in ends.items()}
     over_angle = {group[0]: whose(group) for group in one_curve_each(*pressures.values())}
     over_volume = alike(view, *pressures.values(), *volumes.values())
-    figure, axes = panels(1, 2, 13.0, 5.5, ratios=(1.5, 1.0))
+    figure, axes = panels(1, 2, 13.0, 5.5, width_ratios=(1.5, 1.0))
     for number, (end, pressure) in enumerate(pressures.items()):
         lines = {k: line_of(k * len(ends) + number) for k in range(len(pistons))}
         along, drawn = view.drawn(view.along, pressure)
@@ -185,8 +183,8 @@ def indicator_figure(view: View) -> Figure:
         for k, cylinders in over_volume.items():
             label = _named(view, cylinders, end)
             axes[1].plot(volumes[end][:, k], pressure[:, k], **lines[k], label=label)
-    axes[0].set_ylabel("gauge pressure [bar]")
-    axes[1].set_ylabel("gauge pressure [bar]")
+    for ax in axes:
+        ax.set_ylabel("gauge pressure [bar]")
     axes[1].set_xlabel("volume displaced from TDC [cm³]")
     crank_axis(axes[:1], view)
     legend(figure, axes[0])

@@ -6,12 +6,12 @@ import io
 import math
 import re
 import textwrap
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
 import numpy as np
-from matplotlib import rcParams
+from matplotlib import rc_context, rcParams
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -21,6 +21,7 @@ from matplotlib.image import imsave
 from matplotlib.ticker import LogLocator, NullLocator
 from numpy.typing import NDArray
 
+from crankmbs.figures.panel import Panel
 from crankmbs.figures.view import View
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
@@ -40,7 +41,6 @@ __all__ = [
     "keep_flat",
     "label_contours",
     "legend",
-    "legend_grid",
     "line_of",
     "logarithmic",
     "mark_points",
@@ -104,17 +104,14 @@ def png(figure: Figure, dpi: float | Literal["figure"] = "figure") -> bytes:
     return file.getvalue()
 
 
+@rc_context({"text.hinting": "no_hinting"})  # a fifth faster, and at 150 dpi it looks the same
 def drawn(figure: Figure) -> Callable[[Path], None]:
-    """Lay the figure out and draw it, once: savefig would draw it twice; what writes it as a PNG
-    file, on another thread too."""
-    layout = figure.get_layout_engine()
-    if layout is not None:
-        layout.execute(figure)
-        figure.set_layout_engine("none")
-    canvas: Any = figure.canvas  # `panels` made it, and the layout has measured its texts with it
+    """Draw the figure, once: savefig would draw it twice; what writes it as a PNG file, on another
+    thread too."""
+    canvas: Any = figure.canvas  # `panels` made it
     canvas.draw()
-    pixels, dpi = canvas.buffer_rgba(), figure.dpi
-    return lambda file: imsave(file, pixels, format="png", dpi=dpi, pil_kwargs=_FAST)
+    pixels = canvas.buffer_rgba()
+    return lambda file: imsave(file, pixels, format="png", dpi=figure.dpi, pil_kwargs=_FAST)
 
 
 def save(figure: Figure, file: Path) -> Path:
@@ -129,15 +126,17 @@ def save(figure: Figure, file: Path) -> Path:
 
 
 def panels(
-    rows: int, columns: int, width: float, height: float, ratios: tuple[float, ...] | None = None
+    rows: int, columns: int, width: float, height: float, **ratios: tuple[float, ...]
 ) -> tuple[Figure, list[Axes]]:
     """A figure [inch] with its axes, row by row; it belongs to no window and no global state.
 
-    ratios : widths of the columns to one another; None: all alike
+    ratios : width_ratios of columns, height_ratios of rows to one another; else all are alike
     """
     figure = _Shown(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
-    grid = figure.subplots(rows, columns, squeeze=False, width_ratios=ratios)
+    grid = figure.subplots(
+        rows, columns, squeeze=False, subplot_kw={"axes_class": Panel}, gridspec_kw=ratios
+    )
     return figure, [axes for row in grid for axes in row]
 
 
@@ -209,11 +208,11 @@ def crank_axis(axes: list[Axes], view: View) -> int:
     -------
     how many lines of text stand above the panels
     """
+    for ax in axes:
+        mark_points(ax)
+        ax.set_xlim(view.low, view.high)
+        ax.tick_params(labelbottom=ax is axes[-1])
     if view.over_time:
-        for ax in axes:
-            mark_points(ax)
-            ax.set_xlim(view.low, view.high)
-            ax.tick_params(labelbottom=ax is axes[-1])
         axes[-1].set_xlabel(f"time [s], {view.window.kind}")
         return 0
     span = view.high - view.low
@@ -225,10 +224,7 @@ def crank_axis(axes: list[Axes], view: View) -> int:
     size = _small()
     below = _lines_below(labels, size, span / axes[0].get_window_extent().width)
     for ax in axes:
-        mark_points(ax)
-        ax.set_xlim(view.low, view.high)
         ax.set_xticks(ticks, [f"{name:g}" for name in names])
-        ax.tick_params(labelbottom=ax is axes[-1])
         for at in labels:
             ax.axvline(at, color=_GREY, linewidth=1.0, linestyle=(0, (6, 4)), zorder=1)
     for at, text in labels.items():
@@ -286,22 +282,29 @@ def keep_flat(ax: Axes, values: Array) -> None:
 
 
 def legend(figure: Figure, *axes: Axes) -> None:
-    """One legend above the panels, out of the way of the curves of these."""
-    pairs = [pair for ax in axes for pair in zip(*ax.get_legend_handles_labels(), strict=True)]
-    if pairs:
-        handles, labels = zip(*pairs, strict=True)
-        columns = legend_grid(labels, figure)[1]
-        figure.legend(handles, labels, loc="outside upper center", ncols=columns)
+    """One legend above the panels, out of the way of the curves of these; each label once."""
+    found = {
+        label: handle
+        for ax in axes
+        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True)
+    }
+    if found:
+        figure.legend(
+            [*found.values()],
+            [*found],
+            loc="outside upper center",
+            ncols=_columns([*found], figure),
+        )
 
 
-def legend_grid(labels: Sequence[str], figure: Figure) -> tuple[int, int]:
-    """Rows and columns of a legend, filled column by column, that is no wider than its figure."""
+def _columns(labels: list[str], figure: Figure) -> int:
+    """Columns of a legend, filled one by one, that is no wider than its figure."""
     room = figure.get_figwidth() * 72.0 / float(rcParams["legend.fontsize"])
     for rows in range(1, len(labels)):
         columns = [labels[k : k + rows] for k in range(0, len(labels), rows)]
         if sum(_HANDLE + _LETTER * max(map(len, column)) for column in columns) <= room:
-            return rows, len(columns)
-    return len(labels), 1
+            return len(columns)
+    return 1
 
 
 def footer(figure: Figure, result: Result, about: str, exact: str = "") -> None:

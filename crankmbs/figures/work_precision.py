@@ -9,7 +9,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crankmbs.figures.style import STYLE, caption, decades, save, tiles
+from crankmbs.figures.style import STYLE, caption, decades, legend, save, tiles
 from crankmbs.work_precision import END, MOTION, WorkPrecision
 
 __all__ = ["save_figure", "work_precision_figure"]
@@ -54,8 +54,7 @@ def work_precision_figure(outcome: WorkPrecision) -> Figure:
             ax.set_xlabel("relative error [1]")
         if k % _COLUMNS == 0:
             ax.set_ylabel("wall time [s]")
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=min(len(labels), 5))
+    legend(figure, axes[0])
     about = "wall time over relative error, lower and further left is better"
     grey = "grey: less than the numerical error of the reference, points are drawn at its edge"
     title = outcome.reference.result.scene.title

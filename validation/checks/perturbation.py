@@ -114,7 +114,7 @@ def _exact(scene: Scene, inertias: list[float]) -> list[float]:
 def _figure(found: dict[float, Comparison]) -> Figure:
     """The speed by run and formula with all but the heaviest and the lightest flywheel, and how far
     the fluctuation is off with each."""
-    figure, (speeds, errors) = panels(1, 2, 13.0, 5.2, ratios=(1.5, 1.0))
+    figure, (speeds, errors) = panels(1, 2, 13.0, 5.2, width_ratios=(1.5, 1.0))
     for k, (inertia, each) in enumerate(list(found.items())[1:-1]):
         row = each.row("crank speed", "crank speed, first order")
         degrees, colour = np.degrees(each.excerpt.theta), line_of(k)["color"]
