@@ -4,7 +4,7 @@ import { Engine } from "./engine.js";
 import { setFree } from "./freed.js";
 import { valuesOf } from "./given.js";
 import { LECTURES, lecturedAt } from "./lecture.js";
-import { measuredSpan, measuresOf } from "./measures.js";
+import { lastSpan, measuresOf } from "./measures.js";
 import { reactionsAt } from "./reactions.js";
 import { Track } from "./track.js";
 
@@ -27,7 +27,7 @@ export function answer(engine, { scene, angles }) {
   const { ending, factor = null, balanced = false } = motion;
   if (ending !== "complete") return { ending };
   const samples = Array.from(angles, (theta) => reactionsAt(motion.train, motion.at(theta)));
-  const span = measuredSpan(scene, angles[0], angles[angles.length - 1]);
+  const span = lastSpan(angles[0], angles[angles.length - 1], ...scene.periods);
   const measures = measuresOf(motion, engine.rules[9], span);
   return { ending, factor, balanced, variables: columns(samples), measures };
 }

@@ -81,9 +81,11 @@ SHOWN = {
         ("of(v, k)[`${key}_y`]", "of(v, k)[`${key}_x`]", "vee"),
         ("said(f, k)[`${name} x`]", "said(f, k)[`${name} y`]", "vee"),
         ("y.map((v) => v / si)", "y", "vee"),
-        ("value - next.y[i]", "next.y[i] - value", "vee"),
         ("quantity.said(each, k) - datum", "quantity.said(each, k)", "vee"),
         ('? { unit: "kN", si: 1e3 }', '? { unit: "kN", si: 1 }', "vee"),
+    ],
+    "shapes": [
+        ("value - drawn[m].y[i]", "drawn[m].y[i] - value", "vee"),
     ],
     "words": [
         ("cycle.mean / RPM", "cycle.mean", "vee"),
@@ -169,7 +171,6 @@ DRAWING = {
     "question": "checks what is typed; tests type every answer, its double and other units",
     "refused": "an error's class",
     "row": "draws pistons in a row; its mutants are in `lesson_mutants`",
-    "shapes": "hands curves on",
     "shown": "listens and hands on; tests drag the mechanism of the page and of lessons",
     "slide": "listens; tests drag cursors by mouse and by finger",
     "state": "reads and writes the address; compared with Python's sentences, and read back",

@@ -4,11 +4,11 @@
  * at its end. None of this depends on E: a cell that is met again needs no solving, and the maps of
  * cells are composed to that of a period, of which the motion is one sweep from its fixed point.
  */
-import { Sum, eliminate } from "./arrays.js";
+import { Sum } from "./arrays.js";
 import { SLOW } from "./cell.js";
 import { isAffine } from "./loads.js";
 import { Path } from "./path.js";
-import { eachNode, fillSystem } from "./rule.js";
+import { LinearCell, eachNode } from "./rule.js";
 import { givenAt } from "./tables.js";
 
 /** Whether every cell is affine under a branch of the loads, at whatever speed in this sense. */
@@ -30,7 +30,7 @@ export class AffineCells {
     }
     this.growth = new Float64Array(count).fill(NaN); // until it is solved
     this.rise = new Float64Array(count);
-    [this.system, this.both] = [new Float64Array(s * s), new Float64Array(2 * s)];
+    this.linear = new LinearCell(rule);
     [this.slope, this.least, this.most] = [0, Infinity, 0];
   }
 
@@ -42,8 +42,8 @@ export class AffineCells {
 
   /** Inertia, push and rate at the nodes, in the sense of rotation, and the maps of a cell. */
   solve(number) {
-    const { train, grid, branch, state, inertia, push, rate, gain, shift, system, both } = this;
-    const { matrix, weights } = grid.rule;
+    const { train, grid, branch, state, inertia, push, rate, gain, shift } = this;
+    const { weights } = grid.rule;
     const s = weights.length;
     const first = number * s;
     const width = this.width(number);
@@ -52,18 +52,12 @@ export class AffineCells {
       push[first + j] = givenAt(train, of, state, 0) + branch.c0;
       rate[first + j] = (2 * branch.c2) / inertia[first + j];
     });
-    fillSystem(system, grid.rule, width, rate, first);
-    for (let j = 0; j < s; j++) {
-      both[2 * j] = 1;
-      both[2 * j + 1] = 0;
-      for (let i = 0; i < s; i++) both[2 * j + 1] += width * matrix[j * s + i] * push[first + i];
-    }
-    eliminate(system, both, s, 2);
+    const found = this.linear.solve(width, push, rate, first);
     let [growth, rise] = [0, 0];
     for (let j = 0; j < s; j++) {
       const at = first + j;
-      gain[at] = both[2 * j];
-      shift[at] = both[2 * j + 1];
+      gain[at] = found[2 * j];
+      shift[at] = found[2 * j + 1];
       growth += width * weights[j] * rate[at] * gain[at];
       rise += width * weights[j] * (push[at] + rate[at] * shift[at]);
     }
@@ -146,6 +140,14 @@ export class AffinePeriod {
       total.add(cells.rise[number] * ((1 + growth) / (1 + after[number])));
     }
     this.whole = { growth, rise: total.value };
+  }
+
+  /** The largest torque over the angle with that of the load at rest [N m]. */
+  largest() {
+    const { push, branch: { c0 } } = this.cells;
+    let most = 0;
+    for (const each of push) most = Math.max(most, Math.abs(each - c0));
+    return most + Math.abs(c0);
   }
 
   /** The motion that begins with an energy [J]: its path, duration [s], least and greatest energy,

@@ -24,8 +24,9 @@ export function appliedTo(force, k) {
   return force.filter(({ cylinder }) => cylinder === null || cylinder === k + 1);
 }
 
-/** What acts on a piston of a closed loop but for what drags, { steady, jumping } [N]. */
-export function appliedAt({ applied, top }, { phi, x, x1 }) {
+/** What acts on a piston at a cycle angle [rad] and a position [m] but for what drags,
+ * { steady, jumping } [N]. */
+export function appliedAt({ applied, top }, phi, x, x1) {
   if (!applied.length) return NONE;
   const found = { steady: 0, jumping: 0 };
   for (const law of applied) {
@@ -51,7 +52,7 @@ function lineAt({ knots, pieces }, s, x1) {
 
 /** The whole force on a piston [N] at a speed [rad/s]. */
 export function appliedForce(gear, at, omega) {
-  const { steady, jumping } = appliedAt(gear, at);
+  const { steady, jumping } = appliedAt(gear, at.phi, at.x, at.x1);
   const drag = gear.applied.reduce((sum, { viscous }) => sum + viscous, 0);
   const turns = jumping === 0 ? 0 : slides(gear.shape, at.phi, omega) * jumping;
   return steady - turns + drag * at.x1 * omega;

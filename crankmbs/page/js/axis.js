@@ -1,5 +1,5 @@
 /** Axes of a plot: maps of values to pixels, with grid, ticks and names. */
-import { readable, roundTicks } from "./format.js";
+import { readable, roundTicks, steps } from "./format.js";
 import { Pen, set } from "./svg.js";
 
 const QUARTERS = [45, 90, 180, 360, 720]; // degrees between ticks of the crank angle
@@ -29,8 +29,7 @@ export function drawAxes(group, { box, right, up, x, y }, about) {
   const lines = { grid: "", zero: "", "dead top": "", "dead bottom": "" };
   const paths = Object.keys(lines).map((style) => [style, pen.add("path", { class: style })]);
   ordinate({ pen, lines }, box, up, { y, type: about.type });
-  if (about.overAngle) angles({ pen, lines }, box, right, { x, ...about });
-  else abscissa({ pen, lines }, box, right, { x, ...about });
+  abscissa({ pen, lines }, box, right, { x, ...about });
   const at = { x: about.left, y: box.top - 0.35 * about.type, class: "name" };
   pen.add("text", at, about.name);
   pen.end();
@@ -53,32 +52,32 @@ function ordinate({ pen, lines }, box, up, { y, type }) {
   }
 }
 
-/** The crank angle, with the dead centres. */
-function angles({ pen, lines }, box, right, { x, type, marks, last }) {
-  const wide = (box.right - box.left) / (3.6 * type);
-  const step = QUARTERS.find((each) => (x.high - x.low) / each <= wide) ?? 720;
-  for (let k = Math.ceil(x.low / step - 1e-9); k * step <= x.high + 1e-6; k++) {
-    lines.grid += upright(box, right(k * step));
-    const place = { x: right(k * step), y: box.bottom + 1.25 * type, class: "tick" };
-    if (last) pen.add("text", place, `${readable(k * step, 0)}°`);
-  }
-  for (const { degrees, name } of marks) lines[`dead ${name}`] += upright(box, right(degrees));
-}
-
-/** Another quantity to the right. */
-function abscissa({ pen, lines }, box, right, { x, type, shape, last }) {
-  const count = Math.max((box.right - box.left) / (5 * type), 2);
-  const { ticks, step } = roundTicks(x.low, x.high, count);
+/** The crank angle with the dead centres, or another quantity with its name. */
+function abscissa({ pen, lines }, box, right, { x, type, shape, marks, overAngle, last }) {
+  const letters = (box.right - box.left) / type;
+  const { ticks, step } = overAngle
+    ? quarters(x, letters / 3.6)
+    : roundTicks(x.low, x.high, Math.max(letters / 5, 2));
   for (const tick of ticks) {
-    lines[styleOf(tick, step)] += upright(box, right(tick));
+    lines[overAngle ? "grid" : styleOf(tick, step)] += upright(box, right(tick));
     const place = { x: right(tick), y: box.bottom + 1.25 * type, class: "tick" };
-    if (last) pen.add("text", place, readable(tick, digitsOf(step)));
+    const text = readable(tick, digitsOf(step));
+    if (last) pen.add("text", place, overAngle ? `${text}°` : text);
   }
-  if (!last) return;
+  for (const { degrees, name } of overAngle ? marks : []) {
+    lines[`dead ${name}`] += upright(box, right(degrees));
+  }
+  if (overAngle || !last) return;
   const middle = { x: 0.5 * (box.left + box.right), y: box.bottom + 2.3 * type };
   const { text: name, unit } = shape.right;
   const text = unit ? `${name} [${unit}]` : name;
   pen.add("text", { ...middle, class: "name mid" }, text);
+}
+
+/** Parts of a turn, at most so many: { ticks, step }. */
+function quarters({ low, high }, count) {
+  const step = QUARTERS.find((each) => (high - low) / each <= count) ?? 720;
+  return { step, ticks: steps(low, high, step) };
 }
 
 function upright(box, at) {

@@ -1,7 +1,6 @@
 /** Gauss collocation in one cell of the crank angle: Newton's method on energies at its nodes. */
-import { eliminate } from "./arrays.js";
 import { torqueOf } from "./loads.js";
-import { eachNode, fillSystem, integralTo } from "./rule.js";
+import { LinearCell, eachNode, integralTo } from "./rule.js";
 import { givenAt, movingAt } from "./tables.js";
 
 export const SLOW = Math.PI / 360; // rad: within which no energy may be gone, or it is refused
@@ -15,11 +14,9 @@ export class Stepper {
     const s = rule.nodes.length;
     this.rule = rule;
     this.places = [0, ...rule.nodes, 1];
-    for (const name of ["inertia", "given", "energy", "torque", "slowness", "rate", "drag"]) {
-      this[name] = new Float64Array(s);
-    }
-    this.right = new Float64Array(2 * s); // of the energies, and of a difference of them
-    this.system = new Float64Array(s * s);
+    const names = ["inertia", "given", "energy", "torque", "slowness", "rate", "drag", "push"];
+    for (const name of names) this[name] = new Float64Array(s);
+    this.linear = new LinearCell(rule);
     this.work = this.spent = 0;
   }
 
@@ -94,24 +91,16 @@ export class Stepper {
     }
   }
 
-  /** One step of Newton's method, and by what a difference of the energy at the cell's begin grows
-   * up to its nodes; the relative change of the energies. */
+  /** One step of Newton's method; the relative change of the energies. */
   correct(begin, width) {
-    const { rule, energy, torque, rate, right, system } = this;
-    const s = energy.length;
-    fillSystem(system, rule, width, rate);
-    for (let j = 0; j < s; j++) {
-      right[2 * j] = begin;
-      right[2 * j + 1] = 1;
-      for (let i = 0; i < s; i++) {
-        right[2 * j] += width * rule.matrix[j * s + i] * (torque[i] - rate[i] * energy[i]);
-      }
-    }
-    eliminate(system, right, s, 2);
+    const { energy, torque, rate, push, linear } = this;
+    for (let j = 0; j < energy.length; j++) push[j] = torque[j] - rate[j] * energy[j];
+    const found = linear.solve(width, push, rate);
     let change = 0;
-    for (let j = 0; j < s; j++) {
-      change += Math.abs(right[2 * j] / energy[j] - 1);
-      energy[j] = right[2 * j];
+    for (let j = 0; j < energy.length; j++) {
+      const next = found[2 * j] * begin + found[2 * j + 1];
+      change += Math.abs(next / energy[j] - 1);
+      energy[j] = next;
     }
     return change;
   }
@@ -119,12 +108,12 @@ export class Stepper {
   /** Write torque and slowness of the solved cell from number `first` on; what it gains and takes,
    * and by what part a small difference of the energy grows in it. */
   passed(width, { torque, slowness, first }) {
-    const { rule, rate, right } = this;
+    const { rule, rate, linear: { found } } = this;
     torque.set(this.torque, first);
     slowness.set(this.slowness, first);
     let growth = 0;
     for (let j = 0; j < rate.length; j++) {
-      growth += width * rule.weights[j] * rate[j] * right[2 * j + 1];
+      growth += width * rule.weights[j] * rate[j] * found[2 * j];
     }
     return { gained: width * this.work, spent: Math.abs(width) * this.spent, growth };
   }
@@ -159,4 +148,3 @@ export class Stepper {
     return integralTo(this.rule, this.slowness, 0, x);
   }
 }
-

@@ -3,7 +3,7 @@ import { isShape } from "./gas.js";
 import { find } from "./keys.js";
 import { Player } from "./player.js";
 import { choices } from "./quantities.js";
-import { set, write } from "./svg.js";
+import { build, listed, set, write } from "./svg.js";
 import { spanOf } from "./view.js";
 import { badgeOf, numbersOf, trustOf } from "./words.js";
 
@@ -12,7 +12,7 @@ let shownAs = ""; // the choices that stand there, as text
 /** What a plot can show of a scene, as options. */
 export function fillChoices(select, scene) {
   for (const [label, names] of Object.entries(choices(scene))) {
-    const group = select.appendChild(document.createElement("optgroup"));
+    const group = build(select, "optgroup");
     Object.assign(group, { label }).append(...names.map((each) => new Option(each, each)));
   }
 }
@@ -42,30 +42,20 @@ export function showChoices(given, cycle, state) {
   Object.assign(find("angle"), { min: low, max: high });
 }
 
-/** The factor of slow motion; the first time that which fits a cycle. */
-export function showSlower(cycle, changed) {
-  const slower = find("slower");
-  if (!slower.options.length) {
-    for (const each of Player.choices) {
-      slower.append(new Option(each > 1 ? `${each}× slower` : "real time", String(each)));
-    }
-    slower.value = String(Player.fitting(cycle.duration));
-    slower.addEventListener("change", () => changed(Number(slower.value)));
-  }
-  return Number(slower.value);
+/** Offer slow motion, of which is chosen(factor); the factor that fits a cycle. */
+export function offerSlower({ duration }, chosen) {
+  Player.offer(find("slower"), chosen);
+  const fitting = Player.fitting(duration);
+  find("slower").value = String(fitting);
+  return fitting;
 }
 
 /** Measures, badge, and whether the pressure was carried over. error : of the quick pass */
 export function showWords(given, cycle, error) {
   const all = numbersOf(cycle);
   write(find("trust"), trustOf(cycle, error));
-  const list = find("numbers");
-  while (list.children.length > all.length) list.lastChild.remove();
-  all.forEach(([name, value], n) => {
-    const item = list.children[n] ?? list.appendChild(measure());
-    write(item.children[0], name);
-    write(item.children[1], value);
-  });
+  const items = listed(find("numbers"), all.length, measure);
+  all.forEach((words, n) => words.forEach((text, k) => write(items[n].children[k], text)));
   const { text, good } = badgeOf(cycle, given.endings);
   write(find("badge"), text);
   set(find("badge"), { class: good ? "good" : "drifts" });
@@ -74,9 +64,8 @@ export function showWords(given, cycle, error) {
 }
 
 function measure() {
-  const item = document.createElement("div");
-  item.append(document.createElement("dt"), document.createElement("dd"));
-  return item;
+  const item = build(find("numbers"), "div");
+  for (const tag of ["dt", "dd"]) build(item, tag);
 }
 
 function options(select, count) {

@@ -2,7 +2,7 @@
 import { countUpTo } from "./arrays.js";
 import { filled } from "./format.js";
 import { LECTURES, cylinderLectured, lecturedAt } from "./lecture.js";
-import { measuredSpan, measuresOf } from "./measures.js";
+import { lastSpan, measuresOf } from "./measures.js";
 import { cylinderReactionsAt, reactionsAt } from "./reactions.js";
 import { Refused } from "./refused.js";
 import { spread } from "./shapes.js";
@@ -30,7 +30,7 @@ export function cycleOf(engine, scene, endings, { fine = false, warm = null } = 
   if (motion.ending !== "complete") {
     throw new Refused(filled(endings[motion.ending], { came: scene.crank.inertia }));
   }
-  const span = measuredSpan(scene, motion.from, motion.to);
+  const span = lastSpan(motion.from, motion.to, ...scene.periods);
   const measures = fine ? measuresOf(motion, engine.rules[9], span) : null;
   const angles = spread(span.from, span.to, POINTS);
   const moving = scene.motion === null

@@ -9,10 +9,10 @@ import { settleFree } from "./freed.js";
 import { appliedMarks, appliedTo } from "./applied.js";
 import { frictionMarks } from "./friction.js";
 import { Firing, decisionAngles } from "./fuel.js";
-import { Loop, runningGear, topPosition } from "./geometry.js";
+import { Loop, runningGear, shapeOf, topPosition } from "./geometry.js";
 import { DIAGRAM, SEEN, pressuresOf } from "./gas.js";
 import { Travel } from "./motion.js";
-import { readCell } from "./path.js";
+import { readPath } from "./path.js";
 import { partsOf } from "./refine.js";
 import { settle } from "./settled.js";
 import { speedLaw } from "./speed.js";
@@ -22,6 +22,7 @@ import { edgesOf, reduceAt, split } from "./tables.js";
 
 const ROUNDS = 8; // of cutting cells
 const MOST_CELLS = 20000;
+const COARSE = Math.PI / 24; // the widest cell of a quick pass; firings are often as far apart
 const SAME = 1e-9; // rad: a decision so near has not been passed
 
 /** rules : of Gauss collocation, by their number of stages. */
@@ -31,8 +32,8 @@ export class Engine {
     this.nodes = nodeMaker();
     this.finer = nodeMaker();
     this.samples = tableMaker();
-    this.shapes = remembering((lengths) =>
-      lengths.map(([radius, length, offset]) => ({ radius, length, offset })));
+    this.shapes = remembering((parts) => parts.map(shapeOf), (parts) =>
+      parts.map((each) => Object.values(shapeOf(each))));
     this.loops = remembering((shapes) => shapes.map((shape) => new Loop(shape)));
     this.pressures = remembering(pressuresOf);
     // a stronger load has the knots that it had
@@ -63,8 +64,7 @@ export class Engine {
   /** What moves in every cylinder, with the forces from outside on its piston. */
   gears({ friction, force, ...machine }) {
     const parts = runningGear(machine);
-    const shapes = this.shapes(parts.map((each) =>
-      [each.radius, each.rod.length, each.piston.offset]));
+    const shapes = this.shapes(parts);
     const loops = this.loops(shapes);
     return parts.map(({ radius, rod, piston }, k) => {
       const applied = appliedTo(force, k);
@@ -107,7 +107,9 @@ export class Engine {
     const bends = this.bends(train.friction, shapes, cylinders, cycles, period);
     const applied = gears.map((gear) => gear.applied);
     const kinks = this.kinks(applied, shapes, cylinders, period, quick);
-    return this.edges(shapes, cylinders, cut, [...marks, bends, kinks], period);
+    const drags = gears.some(({ drag }) => drag > 0); // which may brake hard within a cell
+    const widest = quick && !drags ? COARSE : undefined;
+    return this.edges(shapes, cylinders, cut, [...marks, bends, kinks], period, widest);
   }
 
   grid(train, edges, stages, maker) {
@@ -152,7 +154,7 @@ class Free {
 
   /** The sample at a crank angle [rad] between `from` and `to`; of : `movingAt` there. */
   at(theta, of) {
-    return this.path.at(this.train, theta, of);
+    return readPath(this.train, this.path, theta, of);
   }
 
   /** Crank angles from one to another between which all is smooth. */
@@ -181,7 +183,7 @@ class Settled {
     const { train, period, sense, base, path } = this;
     const turns = Math.floor((sense * (theta - base)) / period);
     const within = theta - sense * turns * period;
-    const found = readCell(train, path.rule, path.cellAt(within), within, of);
+    const found = readPath(train, path, within, of);
     found.theta = theta;
     found.time += turns * this.duration - this.late;
     return found;

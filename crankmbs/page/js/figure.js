@@ -1,8 +1,6 @@
 /** A figure of a lesson: the mechanism, curves, sliders, and words that follow them. */
-import { Knobs } from "./knobs.js";
 import { Player } from "./player.js";
 import { Plot } from "./plot.js";
-import { Refused } from "./refused.js";
 import { Shown } from "./shown.js";
 import { Pen, add, watched, write } from "./svg.js";
 import { spanOf, tellingPose } from "./view.js";
@@ -18,96 +16,55 @@ const DEGREE = Math.PI / 180;
  */
 export class Figure extends Shown {
   constructor(root, { given, turner }, spec, made) {
-    super(given, spec.knobs);
+    const part = (name) => root.querySelector(`.${name}`);
+    super(given, spec.knobs, part, { still: "►", moving: "❚❚" });
     Object.assign(this, { root, turner, spec, made, values: { ...spec.values } });
     this.stopped = false; // by hand
-    const [move, button] = [(theta) => this.pose(theta), this.find(".play")];
-    const words = { still: "►", moving: "❚❚" };
-    this.player = new Player({ cycle: () => this.cycle, move, button, ...words });
     this.listen();
     this.update();
   }
 
-  find(selector) {
-    return this.root.querySelector(selector);
-  }
-
   listen() {
-    const { spec, given: { sentences }, root } = this;
-    this.knobs = new Knobs(this.find(".sliders"), { knobs: spec.knobs, sentences }, {
-      turn: (name, value) => this.turn(name, value),
-      release: () => {},
-      refuse: (sentence) => this.say(sentence),
-    });
+    const { spec, given: { sentences }, root, part } = this;
+    this.listenTo(part("sliders"), { knobs: spec.knobs, sentences });
     for (const select of root.querySelectorAll("select[data-choice]")) {
       select.value = this.values[select.dataset.choice];
       select.addEventListener("change", () => this.turn(select.dataset.choice, select.value));
     }
     const plots = [...root.querySelectorAll(".plot")];
     this.plots = plots.map((each) => new Plot(each, (degrees) => this.grasp(degrees)));
-    const stage = this.find(".stage");
-    if (stage) this.draggedOn(stage, () => this.hold(), () => {});
-    const drawing = this.find(".drawing");
-    if (drawing) {
-      watched(drawing, (size) => {
+    if (part("stage")) this.draggedOn(part("stage"));
+    if (part("drawing")) {
+      watched(part("drawing"), (size) => {
         this.size = size;
         if (this.cycle) this.pose(this.theta);
       });
     }
-    this.find(".play")?.addEventListener("click", () => {
-      this.stopped = this.player.playing;
-      this.play(!this.player.playing);
-    });
-    const grasp = (event) => this.grasp(Number(event.target.value));
-    this.find(".angle")?.addEventListener("input", grasp);
+  }
+
+  toggle() {
+    this.stopped = this.player.playing;
+    super.toggle();
   }
 
   /** Play while it is seen, unless it was stopped by hand. */
   seen(visible) {
-    if (!this.find(".play") || this.cycle === null) return;
-    const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    this.play(visible && !still && !this.stopped);
+    if (!this.part("play") || this.cycle === null) return;
+    this.play(visible && !this.still && !this.stopped);
   }
 
   /** Stop for a hand. */
   hold() {
     this.stopped = true;
-    if (this.find(".play")) this.play(false);
+    if (this.part("play")) this.play(false);
   }
 
-  /** Turn to a crank angle [deg] that a hand wants; null where it lets go. */
-  grasp(degrees) {
-    if (degrees === null) return;
-    this.hold();
-    this.seek(degrees * DEGREE);
-  }
+  release() {}
 
-  turn(name, value) {
-    this.values = { ...this.values, [name]: value };
-    this.update();
-  }
-
-  /** Compute and draw; where it cannot be, keep the last good picture and say why. */
-  update() {
+  compute() {
     const { given, turner, made, values } = this;
-    try {
-      this.take(made.scene ? made.scene(turner, values, given) : turner.scene(values));
-      this.say("");
-    } catch (refused) {
-      if (!(refused instanceof Refused)) throw refused;
-      this.say(refused.message);
-      return;
-    }
+    this.take(made.scene ? made.scene(turner, values, given) : turner.scene(values));
     this.refineLater();
-    this.root.dataset.passes = "1";
-    this.redraw();
-  }
-
-  /** The second pass. */
-  refine() {
-    this.cycle = this.refined();
-    this.redraw();
-    this.root.dataset.passes = "2";
   }
 
   redraw() {
@@ -120,10 +77,10 @@ export class Figure extends Shown {
     this.player.slower = Player.fitting(cycle.duration);
     this.speak();
     const { low, high } = spanOf(cycle);
-    const angle = this.find(".angle");
-    if (angle) Object.assign(angle, { min: low, max: high });
+    Object.assign(this.part("angle") ?? {}, { min: low, max: high });
     const first = spec.angle === null ? tellingPose(cycle) : spec.angle * DEGREE;
     this.seek(this.theta ?? first);
+    this.root.dataset.passes = cycle.measures ? "2" : "1";
   }
 
   /** Write what follows the sliders into the words around, { name: text }. */
@@ -154,23 +111,12 @@ export class Figure extends Shown {
   }
 
   pose(theta) {
-    this.theta = theta;
-    const degrees = theta / DEGREE;
-    this.stage?.pose(theta);
-    if (this.size) this.made.draw(this.find(".drawing"), this.cycle, theta, this.size);
-    for (const plot of this.plots) plot.place(degrees);
-    const lead = this.find(".lead");
-    if (lead) write(lead, this.spec.ring ? this.stage.leadInWords(theta) : "");
-    const angle = this.find(".angle");
-    if (!angle) return;
-    angle.value = degrees;
-    const text = `${degrees.toFixed(0)}°`;
-    angle.setAttribute("aria-valuetext", text);
-    write(this.find(".degrees"), text);
+    super.pose(theta);
+    if (this.size) this.made.draw(this.part("drawing"), this.cycle, theta, this.size);
   }
 
   say(sentence) {
-    const message = this.find(".message");
+    const message = this.part("message");
     message.textContent = sentence;
     message.hidden = sentence === "";
   }

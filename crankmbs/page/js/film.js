@@ -43,10 +43,8 @@ class Film {
   offer(duration) {
     this.player.slower = this.first = Player.fitting(duration, RATES, SECONDS);
     const n = RATES.indexOf(this.first);
-    const named = (rate) => (rate > 1 ? `${rate}× slower` : `${Math.round(1 / rate)}× faster`);
-    for (const rate of RATES.slice(n, n + SLOWEST + 1)) {
-      find("slower").append(new Option(rate === 1 ? "real time" : named(rate), String(rate)));
-    }
+    const rates = RATES.slice(n, n + SLOWEST + 1);
+    Player.offer(find("slower"), (rate) => this.slow(rate), rates);
   }
 
   /** Play so many times slower; of the run as small a part is then plotted. */
@@ -58,7 +56,6 @@ class Film {
   listen() {
     find("play").addEventListener("click", () => this.play(!this.player.playing));
     find("time").addEventListener("input", ({ target }) => this.take(Number(target.value)));
-    find("slower").addEventListener("change", ({ target }) => this.slow(Number(target.value)));
     find("large").addEventListener("click", enlarge);
     const { begin, end } = this.track;
     listenToKeys({

@@ -25,20 +25,15 @@ function onPiston(train, v, k) {
     arrow("wall on piston", "wall", pin, place(0, at.side_force)),
     arrow("rod on piston", "pin", pin, place(at.piston_pin_force_x, at.piston_pin_force_y)),
   ];
+  const add = (...about) => found.push(arrow(...about));
   if (train.friction !== null) {
-    const friction = arrow("friction on piston", "bearing", pin, place(-at.friction_force, 0));
-    friction.onSide = at.side_force > 0 ? -1 : 1;
-    found.push(friction);
+    const onSide = at.side_force > 0 ? -1 : 1;
+    add("friction on piston", "bearing", pin, place(-at.friction_force, 0), { onSide });
   }
-  if (train.pressure.length) {
-    const gas = arrow("gas on piston", "gas", pin, place(-at.gas_force, 0));
-    gas.onCrown = true;
-    found.push(gas);
-  }
+  const [onCrown, onSkirt] = [true, true];
+  if (train.pressure.length) add("gas on piston", "gas", pin, place(-at.gas_force, 0), { onCrown });
   if (train.applies) {
-    const applied = arrow("applied force", "outside", pin, place(-at.applied_force, 0));
-    applied.onSkirt = true;
-    found.push(applied);
+    add("applied force", "outside", pin, place(-at.applied_force, 0), { onSkirt });
   }
   return found;
 }
@@ -70,6 +65,6 @@ function onCrank(train, v) {
   return [...rods, arrow("bearing on crank", "bearing", [0, 0], bearing)];
 }
 
-function arrow(name, kind, at, force) {
-  return { name, kind, at, force };
+function arrow(name, kind, at, force, where) {
+  return { name, kind, at, force, ...where };
 }

@@ -58,9 +58,14 @@ export function roundTicks(low, high, count) {
   const rough = (high - low) / count;
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((each) => each * power).find((each) => each >= rough * 0.999);
+  return { ticks: steps(low, high, step), step };
+}
+
+/** The multiples of a step in a range. */
+export function steps(low, high, step) {
   const ticks = [];
   for (let k = Math.ceil(low / step - 1e-9); k <= high / step + 1e-9; k++) ticks.push(k * step);
-  return { ticks, step };
+  return ticks;
 }
 
 /** The largest of 1, 2, 5, 10, ... that is not above a number. */

@@ -235,13 +235,9 @@ function netOf(one, other, share) {
   let common = turns[0];
   while (common % turns[1]) common += turns[0];
   const last = first + common * TURN;
-  const marks = [first, last];
-  for (const cycle of [one, other]) {
-    for (const ahead of knotsOver(cycle, first, last - first)) {
-      if (first + ahead < last - KNOT) marks.push(first + ahead);
-    }
-  }
-  const knots = distinct(marks, KNOT);
+  const marks = [one, other].flatMap((cycle) =>
+    knotsOver(cycle, first, last - first).map((ahead) => first + ahead));
+  const knots = distinct([first, ...marks.filter((mark) => mark < last - KNOT), last], KNOT);
   const { coefficients: less } = cycleOn(other, knots);
   const { coefficients: of } = cycleOn(one, knots);
   return { knots, coefficients: of.map((c, k) => c - share * less[k]) };

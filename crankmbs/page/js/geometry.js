@@ -107,6 +107,10 @@ export function runningGear({ crank, rod, piston, cylinders }) {
   return cylinders.map(({ own }) => own ?? { radius: crank.radius, rod, piston });
 }
 
+export function shapeOf({ radius, rod, piston }) {
+  return { radius, length: rod.length, offset: piston.offset };
+}
+
 /** A vector from a cylinder's frame in the engine's. */
 export function turnedBy(bank, x, y) {
   if (bank === 0) return [x, y];

@@ -1,6 +1,7 @@
 /** Knobs: a slider without steps, with a number to type and its unit. */
-import { Refused } from "./refused.js";
+import { refusalOf } from "./refused.js";
 import { numberOf } from "./state.js";
+import { build } from "./svg.js";
 
 // a decimal comma, but for 1,200, which may be a thousand and two hundred
 const COMMA = /^(?!\D*[1-9]\d{0,2},\d{3}\s*$)(\s*[+\u2212-]?\d*),(\d+\s*)$/;
@@ -19,15 +20,15 @@ export class Knobs {
   }
 
   make(root, knob, kind) {
-    const row = element("div", kind, root);
-    const label = element("label", "", row);
+    const row = build(root, "div", kind);
+    const label = build(row, "label");
     label.htmlFor = `${root.dataset.prefix ?? ""}knob-${knob.name}`;
     label.textContent = knob.label;
-    const entry = element("input", "entry", row);
+    const entry = build(row, "input", "entry");
     Object.assign(entry, { type: "text", inputMode: "decimal", autocomplete: "off" });
     entry.setAttribute("aria-label", `${knob.label}${knob.unit ? `, in ${knob.unit}` : ""}`);
-    element("span", "unit", row).textContent = knob.unit;
-    const slider = element("input", "slider", row);
+    build(row, "span", "unit").textContent = knob.unit;
+    const slider = build(row, "input", "slider");
     Object.assign(slider, { type: "range", min: knob.low, max: knob.high, step: "any" });
     slider.id = label.htmlFor;
     if (knob.about) row.title = knob.about;
@@ -50,16 +51,14 @@ export class Knobs {
 
   /** A number that was typed: the knob as it was, with the reason, where it cannot be. */
   type(knob, text) {
-    try {
+    const reason = refusalOf(() => {
       const labelled = { ...knob, name: knob.label };
       this.turn(knob, numberOf(text.replace(COMMA, "$1.$2"), labelled, this.rules));
       this.on.release();
-    } catch (refused) {
-      if (!(refused instanceof Refused)) throw refused;
-      const unit = knob.unit && `, in ${knob.unit}`;
-      const example = knob.value.toFixed(knob.decimals);
-      this.on.refuse(`${refused.message}; type for example ${example}${unit}`);
-    }
+    });
+    if (reason === null) return;
+    const unit = knob.unit && `, in ${knob.unit}`;
+    this.on.refuse(`${reason}; type for example ${knob.value.toFixed(knob.decimals)}${unit}`);
   }
 
   /** Show the values that a state has, without turning. */
@@ -82,10 +81,4 @@ function show({ slider, entry, knob }, value) {
   entry.value = value.toFixed(knob.decimals);
   const text = `${entry.value} ${knob.unit}`.trim();
   slider.setAttribute("aria-valuetext", text);
-}
-
-function element(tag, name, parent) {
-  const made = document.createElement(tag);
-  if (name) made.className = name;
-  return parent.appendChild(made);
 }

@@ -8,63 +8,47 @@
 import { turnedBy } from "./geometry.js";
 import { pressureAt } from "./reactions.js";
 
-/** Piston displacement [m], velocity and acceleration, exact at any angular acceleration. */
-function exactMotion(phi, { radius: r, length: l, offset: e }, omega, alpha) {
-  const sine = (r * Math.sin(phi) - e) / l;
+/** Piston displacement [m], velocity and acceleration, exact at any angular acceleration; and as
+ * parts of the net force the side thrust, N / F = tan beta, and the tangential force on the crank
+ * pin, T / F = sin(phi + beta) / cos beta. */
+function exact(phi, { radius: r, length: l, offset: e }, omega, alpha) {
+  const [across, along] = [Math.sin(phi), Math.cos(phi)];
+  const sine = (r * across - e) / l;
   const cosine = Math.sqrt((1 - sine) * (1 + sine));
   const slope = sine / cosine;
-  const [across, along] = [Math.sin(phi), Math.cos(phi)];
   const first = r * (across + along * slope);
   const second = r * (along - across * slope + ((r / l) * along ** 2) / cosine ** 3);
   return {
     displacement: r * (1 - along) + l * (1 - cosine),
     velocity: omega * first,
     acceleration: second * omega ** 2 + first * alpha,
+    side: slope,
+    turning: first / r,
   };
 }
 
 /** The same truncated, at constant speed:
- * s = r [1 - cos phi + (lambda/4)(1 - cos 2 phi) - k lambda sin phi] and its derivatives. */
-function truncatedMotion(phi, { radius: r, length: l, offset: e }, omega) {
+ * s = r [1 - cos phi + (lambda/4)(1 - cos 2 phi) - k lambda sin phi] and its derivatives, of which
+ * the first over r is T / F; N / F = lambda (sin phi - k). */
+function truncated(phi, { radius: r, length: l, offset: e }, omega) {
   const ratio = r / l;
   const skew = (e / r) * ratio;
   const [across, along] = [Math.sin(phi), Math.cos(phi)];
   const bow = (ratio / 4) * (1 - Math.cos(2 * phi));
+  const turning = across + (ratio / 2) * Math.sin(2 * phi) - skew * along;
   return {
     displacement: r * (1 - along + bow - skew * across),
-    velocity: r * omega * (across + (ratio / 2) * Math.sin(2 * phi) - skew * along),
+    velocity: r * omega * turning,
     acceleration: r * omega ** 2 * (along + ratio * Math.cos(2 * phi) + skew * across),
-  };
-}
-
-/** Side thrust and tangential force on the crank pin from the net force [N]: N = F tan beta,
- * T = F sin(phi + beta) / cos beta. */
-function exactForces(phi, { radius: r, length: l, offset: e }, net) {
-  const sine = (r * Math.sin(phi) - e) / l;
-  const cosine = Math.sqrt((1 - sine) * (1 + sine));
-  const rod = net / cosine;
-  const [across, along] = [Math.sin(phi), Math.cos(phi)];
-  return {
-    side: rod * sine,
-    tangential: rod * (across * cosine + along * sine), // sin(phi + beta)
-  };
-}
-
-/** The same truncated. */
-function truncatedForces(phi, { radius: r, length: l, offset: e }, net) {
-  const ratio = r / l;
-  const k = e / r;
-  const [across, along] = [Math.sin(phi), Math.cos(phi)];
-  return {
-    side: net * ratio * (across - k),
-    tangential: net * (across + (ratio / 2) * Math.sin(2 * phi) - k * ratio * along),
+    side: ratio * across - skew,
+    turning,
   };
 }
 
 /** The lectures that are shown, by the names under which they are compared. */
 export const LECTURES = {
-  "untruncated lecture": { motion: exactMotion, forces: exactForces },
-  "S1 (motion and forces truncated)": { motion: truncatedMotion, forces: truncatedForces },
+  "untruncated lecture": exact,
+  "S1 (motion and forces truncated)": truncated,
 };
 
 /** What is shown of a lecture's formulas: of every cylinder, and of the main bearing.
@@ -86,7 +70,7 @@ export function lecturedAt(train, lecture, sample) {
 }
 
 /** Those of one cylinder, from number 0. */
-export function cylinderLectured(train, { motion, forces }, sample, number) {
+export function cylinderLectured(train, lecture, sample, number) {
   const { gears, cylinders } = train;
   const { rod, piston, shape } = gears[number];
   const { theta, omega, alpha, shares } = sample;
@@ -94,21 +78,21 @@ export function cylinderLectured(train, { motion, forces }, sample, number) {
   const phi = theta + cylinders[number].phase;
   const atPistonPin = (rod.mass * rod.center_of_mass) / shape.length;
   const atCrankPin = rod.mass - atPistonPin;
-  const moved = motion(phi, shape, omega, alpha);
+  const moved = lecture(phi, shape, omega, alpha);
   const gas = (piston.area ?? 0) * pressureAt(train, shares, number, phi);
   const forceWith = (mass) => gas - mass * moved.acceleration;
   const net = forceWith(piston.mass + atPistonPin);
-  const of = forces(phi, shape, net);
+  const side = net * moved.side;
   const [turningX, turningY] = inertiaAtThrow(atCrankPin, r, phi, omega, alpha);
   return {
     "piston displacement": moved.displacement,
     "piston velocity": moved.velocity,
     "piston acceleration": moved.acceleration,
-    "side thrust": of.side,
-    torque: of.tangential * r - atCrankPin * r ** 2 * alpha,
+    "side thrust": side,
+    torque: net * moved.turning * r - atCrankPin * r ** 2 * alpha,
     "piston pin force x": forceWith(piston.mass),
     "crank pin force x": net + turningX,
-    "crank pin force y": turningY - of.side,
+    "crank pin force y": turningY - side,
   };
 }
 

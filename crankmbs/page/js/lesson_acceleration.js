@@ -2,7 +2,7 @@
 import { rootIn } from "./arrays.js";
 import { readable } from "./format.js";
 import { begun } from "./lesson.js";
-import { diagram, overAngle, spread } from "./shapes.js";
+import { diagram, overAngle, ratioOf, spread } from "./shapes.js";
 
 const DEGREE = Math.PI / 180;
 const LIMIT = (Math.sqrt(21) - 3) / 6; // of the rod ratio: above it the minimum leaves
@@ -29,10 +29,6 @@ const FORK = {
   shapes: (cycle) => [fork(cycle)],
   says: (cycle) => ({ ratio: readable(ratioOf(cycle), 4), limit: readable(LIMIT, 4) }),
 };
-
-function ratioOf({ train: { shape } }) {
-  return shape.radius / shape.length;
-}
 
 /** The crank angle of the least acceleration [rad], up to bottom dead centre: where the third
  * derivative of the displacement is zero, found by halving. */

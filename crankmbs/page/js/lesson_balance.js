@@ -30,8 +30,8 @@ const SHAKE = {
     return [over, sticks(cycle, over.curves[0].y, "kN", most)];
   },
   says: (cycle) => {
-    const amplitudes = ordersOf(cycle, cycle.samples.map((v) => v.frame_force_x / KN));
-    const at = (order) => amplitudes.find((each) => Math.abs(each.order - order) < 1e-6).size;
+    const forces = cycle.samples.map((v) => v.frame_force_x / KN);
+    const at = (order) => orderOf(cycle, forces, order).size;
     return { first: `${readable(at(1), 2)} kN`, second: `${readable(at(2), 2)} kN` };
   },
 };
@@ -116,8 +116,8 @@ const TWIN = {
   },
   says: (cycle) => {
     const { samples } = cycle;
-    const of = (axis) => ordersOf(cycle, samples.map((v) => v[`frame_force_${axis}`] / KN))
-      .find(({ order }) => Math.abs(order - 1) < 1e-6).size;
+    const of = (axis) =>
+      orderOf(cycle, samples.map((v) => v[`frame_force_${axis}`] / KN), 1).size;
     return { first: `${readable(Math.max(of("x"), of("y")), 2)} kN` };
   },
 };
@@ -152,9 +152,13 @@ function ordersOf({ from, to, angles }, values) {
   });
 }
 
+function orderOf(cycle, values, wanted) {
+  return ordersOf(cycle, values).find(({ order }) => Math.abs(order - wanted) < 1e-6);
+}
+
 /** One order of values, at the samples. */
 function partOf(cycle, values, wanted) {
-  const part = ordersOf(cycle, values).find(({ order }) => Math.abs(order - wanted) < 1e-6);
+  const part = orderOf(cycle, values, wanted);
   return cycle.angles.map((theta) =>
     part.cos * Math.cos(wanted * theta) + part.sin * Math.sin(wanted * theta));
 }

@@ -2,7 +2,7 @@
 import { readable } from "./format.js";
 import { bottomPosition, topPosition } from "./geometry.js";
 import { begun } from "./lesson.js";
-import { overAngle } from "./shapes.js";
+import { overAngle, ratioOf } from "./shapes.js";
 
 const MM = 1e-3;
 const QUARTER = Math.PI / 2;
@@ -48,10 +48,6 @@ function endless(cycle) {
   const { radius: r } = cycle.train.shape;
   const of = ({ crank_angle: phi }) => (r * (1 - Math.cos(phi))) / MM;
   return { name: "endless rod", style: "plain", of };
-}
-
-function ratioOf({ train: { shape } }) {
-  return shape.radius / shape.length;
 }
 
 /** How far past half its stroke the piston is at 90 degrees [mm]. */

@@ -1,4 +1,5 @@
 /** Constant speed or not: what a flywheel lets through, and what it costs a formula. */
+import { remembering } from "./arrays.js";
 import { cycleOf } from "./cycle.js";
 import { Engine } from "./engine.js";
 import { readable } from "./format.js";
@@ -17,7 +18,7 @@ const QUANTITIES = {
 };
 
 export function start() {
-  return begun({ swing: SWING, fall: new Fall(), cost: COST });
+  return begun({ swing: SWING, fall: FALL, cost: COST });
 }
 
 const SWING = {
@@ -37,10 +38,10 @@ const SWING = {
 };
 
 /** The fluctuation over the flywheel, from one settled run for each, and by the textbook. */
-class Fall {
-  shapes(cycle, { flywheel }, given) {
-    this.curve ??= this.curveOf(cycle, given);
-    const { inertias, runs, work, moving } = this.curve;
+const FALL = {
+  shapes: (cycle, { flywheel }, given) => {
+    const { inertias, runs } = fallOf(given, cycle.scene);
+    const { work, moving } = given.textbook;
     const squared = cycle.mean ** 2;
     const textbook = inertias.map((inertia) => (100 * work) / ((inertia + moving) * squared));
     return [diagram({
@@ -54,25 +55,22 @@ class Fall {
       of: () => [flywheel, 100 * cycle.fluctuation],
       holds: { x: [0], y: [0] },
     })];
-  }
+  },
+  says: (cycle) => ({ delta: `${readable(100 * cycle.fluctuation, 2)} %` }),
+};
 
-  says(cycle) {
-    return { delta: `${readable(100 * cycle.fluctuation, 2)} %` };
-  }
-
-  curveOf({ scene }, given) {
-    const engine = new Engine(given.rules);
-    const { low, high } = given.figures.find(({ name }) => name === "fall").knobs[0];
-    const inertias = spread(0, 1, COUNT).map((part) => low * (high / low) ** part);
-    let warm = null;
-    const runs = inertias.map((inertia) => {
-      const heavier = { ...scene, crank: { ...scene.crank, inertia } };
-      warm = cycleOf(engine, heavier, given.endings, { warm });
-      return 100 * warm.fluctuation;
-    });
-    return { inertias, runs, work: given.textbook.work, moving: given.textbook.moving };
-  }
-}
+const fallOf = remembering((given, scene) => {
+  const engine = new Engine(given.rules);
+  const { low, high } = given.figures.find(({ name }) => name === "fall").knobs[0];
+  const inertias = spread(0, 1, COUNT).map((part) => low * (high / low) ** part);
+  let warm = null;
+  const runs = inertias.map((inertia) => {
+    const heavier = { ...scene, crank: { ...scene.crank, inertia } };
+    warm = cycleOf(engine, heavier, given.endings, { warm });
+    return 100 * warm.fluctuation;
+  });
+  return { inertias, runs };
+}, (given) => [given]);
 
 const COST = {
   shapes: (cycle, { quantity }) => {
@@ -80,7 +78,7 @@ const COST = {
     const at = (row) => of(lecturedAt(cycle.train, EXACT, row)) / si;
     const even = cycle.rows.map((row) => at({ ...row, omega: cycle.mean, alpha: 0 }));
     const curves = [
-      { name: "as it swings", of: (v) => at(rowOf(cycle, v)) },
+      { name: "as it swings", of: ({ crank_angle: theta }) => at(cycle.motion.at(theta)) },
       { name: "constant speed", style: "exact", y: even },
     ];
     const apart = [["as it swings − constant speed", 0, 1]];
@@ -92,8 +90,3 @@ const COST = {
     return { share: `${readable((100 * largest(off)) / largest(y), 2)} %` };
   },
 };
-
-/** What the lecture's formulas take of a sample. */
-function rowOf(cycle, { crank_angle: theta }) {
-  return cycle.motion.at(theta);
-}

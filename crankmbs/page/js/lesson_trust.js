@@ -1,4 +1,5 @@
 /** How far to trust a number: step size, order, error, and an error one can state. */
+import { remembering } from "./arrays.js";
 import { METHODS, stepped } from "./explicit.js";
 import { readable } from "./format.js";
 import { begun } from "./lesson.js";
@@ -10,7 +11,7 @@ const COUNTS = [36, 48, 72, 108, 144, 216, 288, 432, 576, 864, 1152, 1728, 2304]
 const STYLES = { Euler: "exact", Heun: "second", "Runge-Kutta": "third" };
 
 export function start() {
-  return begun({ step: STEP, order: new Order(), stated: new Stated() });
+  return begun({ step: STEP, order: ORDER, stated: STATED });
 }
 
 /** How many steps of a size [deg] a cycle takes, an even number. */
@@ -60,84 +61,65 @@ function between(found, theta, { from, to }) {
 }
 
 /** The work-precision diagram: digits over steps, each method a line as steep as its order. */
-class Order {
-  shapes(cycle, { size, method }) {
-    const lines = this.linesOf(cycle);
+const ORDER = {
+  shapes: (cycle, { size, method }) => {
     const count = countOf(cycle, size);
-    return [diagram({
-      title: "correct digits over steps",
-      right: { text: "steps in a cycle, power of ten", unit: "" },
-      up: { text: "correct digits", unit: "" },
-      curves: Object.entries(lines).map(([name, digits]) => ({
-        name: `${name}, order ${METHODS[name].order}`,
-        style: STYLES[name],
-        x: COUNTS.map(Math.log10),
-        y: digits,
-      })),
-      of: () => [Math.log10(count), digitsOf(errorOf(cycle, method, count))],
-      holds: { y: [0] },
-    })];
-  }
-
-  says(cycle, { size, method }) {
+    const error = errorOf(cycle, method, count);
+    return [digitsOver("correct digits over steps", linesOf(cycle), count, error)];
+  },
+  says: (cycle, { size, method }) => {
     const count = countOf(cycle, size);
     const [error, half] = [count, 2 * count].map((n) => errorOf(cycle, method, n));
     return { digits: readable(digitsOf(error), 1), times: readable(error / half, 1) };
-  }
+  },
+};
 
-  /** All methods at all numbers of steps, once for each cycle. */
-  linesOf(cycle) {
-    if (this.cycle !== cycle) {
-      this.cycle = cycle;
-      this.lines = Object.fromEntries(Object.keys(METHODS).map((name) =>
-        [name, COUNTS.map((count) => digitsOf(errorOf(cycle, name, count)))]));
-    }
-    return this.lines;
-  }
-}
+/** All methods at all numbers of steps, once for each cycle. */
+const linesOf = remembering((cycle) => Object.entries(METHODS).map(([name, { order }]) => ({
+  name: `${name}, order ${order}`,
+  style: STYLES[name],
+  errors: COUNTS.map((count) => errorOf(cycle, name, count)),
+})));
 
 /** The error that two runs state, beside the true one. */
-class Stated {
-  shapes(cycle, { size, method }) {
-    const both = this.bothOf(cycle, method);
-    const at = Math.log10(countOf(cycle, size));
-    return [diagram({
-      title: "error stated and true",
-      right: { text: "steps in a cycle, power of ten", unit: "" },
-      up: { text: "correct digits", unit: "" },
-      curves: [
-        { name: "true", x: COUNTS.map(Math.log10), y: both.map(([truth]) => digitsOf(truth)) },
-        {
-          name: "stated",
-          style: "exact",
-          x: COUNTS.map(Math.log10),
-          y: both.map(([, said]) => digitsOf(said)),
-        },
-      ],
-      of: () => [at, digitsOf(this.pair(cycle, method, countOf(cycle, size))[0])],
-      holds: { y: [0] },
-    })];
-  }
-
-  says(cycle, { size, method }) {
-    const [truth, said] = this.pair(cycle, method, countOf(cycle, size));
+const STATED = {
+  shapes: (cycle, { size, method }) => {
+    const count = countOf(cycle, size);
+    const [truth] = pair(cycle, method, count);
+    return [digitsOver("error stated and true", bothOf(cycle, method), count, truth)];
+  },
+  says: (cycle, { size, method }) => {
+    const [truth, said] = pair(cycle, method, countOf(cycle, size));
     return { ratio: readable(said / truth, 2) };
-  }
+  },
+};
 
-  bothOf(cycle, method) {
-    if (this.cycle !== cycle || this.method !== method) {
-      Object.assign(this, { cycle, method });
-      this.both = COUNTS.map((count) => this.pair(cycle, method, count));
-    }
-    return this.both;
-  }
+const bothOf = remembering((cycle, method) => {
+  const both = COUNTS.map((count) => pair(cycle, method, count));
+  return [
+    { name: "true", errors: both.map(([truth]) => truth) },
+    { name: "stated", style: "exact", errors: both.map(([, said]) => said) },
+  ];
+});
 
-  /** The true error with so many steps, and what that run with one of half as many states. */
-  pair(cycle, method, count) {
-    const coarse = stepped(cycle, method, count / 2);
-    const fine = stepped(cycle, method, count).filter((_, k) => k % 2 === 0);
-    const truth = largest(fine, ({ theta }) => cycle.motion.at(theta).omega, cycle);
-    const apart = largest(fine, (_, k) => coarse[k].omega, cycle);
-    return [truth, apart / (2 ** METHODS[method].order - 1)];
-  }
+/** The true error with so many steps, and what that run with one of half as many states. */
+function pair(cycle, method, count) {
+  const coarse = stepped(cycle, method, count / 2);
+  const fine = stepped(cycle, method, count).filter((_, k) => k % 2 === 0);
+  const truth = largest(fine, ({ theta }) => cycle.motion.at(theta).omega, cycle);
+  const apart = largest(fine, (_, k) => coarse[k].omega, cycle);
+  return [truth, apart / (2 ** METHODS[method].order - 1)];
+}
+
+/** Lines { name, style, errors } over the numbers of steps; count, error : of the dot */
+function digitsOver(title, lines, count, error) {
+  return diagram({
+    title,
+    right: { text: "steps in a cycle, power of ten", unit: "" },
+    up: { text: "correct digits", unit: "" },
+    curves: lines.map(({ name, style, errors }) =>
+      ({ name, style, x: COUNTS.map(Math.log10), y: errors.map(digitsOf) })),
+    of: () => [Math.log10(count), digitsOf(error)],
+    holds: { y: [0] },
+  });
 }

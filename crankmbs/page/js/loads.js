@@ -76,10 +76,8 @@ function branchBeside(loads, phases, t, omega, rising) {
 
 /** End the branch at the times and speeds at which a load's phase may end. */
 function boundByPhase(branch, load, phase, t, omega, rising) {
-  const times = phase === DUE ? [load.after] : phase === ACTING ? [load.until] : [];
-  for (const time of times) {
-    if (time !== null && time > t) branch.tEnd = Math.min(branch.tEnd, time);
-  }
+  const time = { [DUE]: load.after, [ACTING]: load.until }[phase] ?? null;
+  if (time !== null && time > t) branch.tEnd = Math.min(branch.tEnd, time);
   const speed = { [WAITING]: load.from_speed, [ACTING]: load.until_speed }[phase] ?? null;
   if (speed === null) return;
   if (speed > omega || (speed === omega && !rising)) branch.high = Math.min(branch.high, speed);

@@ -16,12 +16,6 @@ const JOINTS = {
   "side force": (v) => Math.abs(v.side_force),
 };
 
-/** Over what the motion of a scene that turns from `from` to `to` [rad] is measured: its last
- * period after which all comes again, without one that of the loads, or the last cycle. */
-export function measuredSpan(scene, from, to) {
-  return lastSpan(from, to, ...scene.periods);
-}
-
 /** The last whole period of a motion that turns from `from` to `to` [rad], the first of those that
  * it holds; without one the last whole revolution, or else all of it. */
 export function lastSpan(from, to, ...periods) {

@@ -11,7 +11,7 @@ import { Stepper } from "./cell.js";
 import { Firing } from "./fuel.js";
 import { branchAt, firstPhases, laterPhases, torqueOf } from "./loads.js";
 import { Path } from "./path.js";
-import { givenAt, reduceAt } from "./tables.js";
+import { reduceAt, unloadedAt } from "./tables.js";
 
 const SLIVER = 1e-12; // rad
 const LANDINGS = 12;
@@ -246,7 +246,7 @@ export class Travel {
   /** The same without the loads over time and speed; of : the crank train where the motion is. */
   unloaded(omega, of = reduceAt(this.train, this.theta)) {
     const { train, phases, sense, firing: { shares } } = this;
-    return givenAt(train, of, { shares, phases, sense }, omega) - 0.5 * of.slope * omega * omega;
+    return unloadedAt(train, of, { shares, phases, sense }, omega);
   }
 }
 

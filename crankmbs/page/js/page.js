@@ -1,16 +1,13 @@
 /** The page: knobs, mechanism and plots of one scene, and what happens between them. */
-import { fillChoices, listenToChoices, showChoices, showSlower } from "./controls.js";
+import { fillChoices, listenToChoices, offerSlower, showChoices } from "./controls.js";
 import { say, seenPlots, showWords, unfold, unused } from "./controls.js";
 import { valuesOf } from "./given.js";
 import { enlarge, find, listenToKeys } from "./keys.js";
-import { Knobs } from "./knobs.js";
-import { Player } from "./player.js";
 import { Plot } from "./plot.js";
 import { drawn } from "./quantities.js";
-import { Refused } from "./refused.js";
+import { refusalOf } from "./refused.js";
 import { Shown } from "./shown.js";
 import { Address } from "./state.js";
-import { write } from "./svg.js";
 import { dataFile, save } from "./taken.js";
 import { Turner } from "./turned.js";
 import { firstView, keysOf, tellingPose } from "./view.js";
@@ -25,45 +22,31 @@ export function start() {
 
 class Page extends Shown {
   constructor(given) {
-    super(given, given.knobs);
+    super(given, given.knobs, find);
     this.turner = new Turner(given);
     this.view = firstView(given);
     this.address = new Address(keysOf(given), given.sentences);
-    const move = (theta) => this.pose(theta);
-    this.player = new Player({ cycle: () => this.cycle, move, button: find("play") });
     this.listen();
     this.begin();
   }
 
   listen() {
-    const { given } = this;
-    this.knobs = new Knobs(find("sliders"), given, {
-      turn: (name, value) => this.turn(name, value),
-      release: () => this.release(),
-      refuse: say,
-    });
-    this.draggedOn(find("stage"), () => this.play(false), () => this.release());
-    this.plots = Object.fromEntries(PLOTS.map((name) => [name, this.plot(name)]));
+    this.listenTo(find("sliders"), this.given);
+    this.draggedOn(find("stage"));
+    this.plots = PLOTS.map((name) => this.plot(find(name)));
     listenToChoices((name, value) => {
       if (name in this.view) this.view = { ...this.view, [name]: value };
       this.turn(name, name in this.view ? undefined : value);
       this.release();
     });
-    this.press("play", () => this.play(!this.player.playing));
     this.press("reset", () => this.reset());
-    this.press("csv", () => save(...dataFile(given, this.cycle)));
+    this.press("csv", () => save(...dataFile(this.given, this.cycle)));
     this.press("large", enlarge);
     this.press("more", () => { unfold(); this.redraw(); });
-    find("angle").addEventListener("input", (event) => {
-      this.play(false);
-      this.seek(Number(event.target.value) * DEGREE);
-    });
-    find("angle").addEventListener("change", () => this.release());
     listenToKeys({
-      play: () => this.play(!this.player.playing),
+      play: () => this.toggle(),
       step: (sign, far) => {
-        this.play(false);
-        this.seek((Math.round(this.theta / DEGREE) + sign * (far ? 10 : 1)) * DEGREE);
+        this.grasp(Math.round(this.theta / DEGREE) + sign * (far ? 10 : 1));
         this.release();
       },
     });
@@ -74,13 +57,8 @@ class Page extends Shown {
     find(id).addEventListener("click", does);
   }
 
-  plot(name) {
-    const root = find(name);
-    const plot = new Plot(root, (degrees) => {
-      if (degrees === null) return this.release();
-      this.play(false);
-      return this.seek(degrees * DEGREE);
-    });
+  plot(root) {
+    const plot = new Plot(root, (degrees) => this.grasp(degrees));
     fillChoices(root.querySelector("select"), this.given.scene);
     const pin = root.querySelector(".pin");
     pin.addEventListener("click", () => pin.setAttribute("aria-pressed", String(plot.pin())));
@@ -93,13 +71,13 @@ class Page extends Shown {
     this.refineLater();
     if (this.cycle === null || this.view.angle !== null) return;
     this.seek(tellingPose(this.cycle));
-    this.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+    this.play(!this.still);
   }
 
   /** Show the state that an address says; what cannot be leaves the page as it is. */
   open(address) {
     const { values, view } = this;
-    try {
+    const reason = refusalOf(() => {
       const state = this.address.read(address);
       this.view = { ...firstView(this.given) };
       this.values = {};
@@ -109,25 +87,21 @@ class Page extends Shown {
       const begun = [...this.given.first, "angle"];
       if (Object.keys(state).some((name) => !begun.includes(name))) unfold(true);
       this.compute();
-      say("");
-    } catch (refused) {
-      if (!(refused instanceof Refused)) throw refused;
-      Object.assign(this, { values, view });
-      say(refused.message);
-    }
+    });
+    if (reason !== null) Object.assign(this, { values, view });
+    say(reason ?? "");
     this.knobs.show(this.values);
     this.redraw();
     this.refineLater();
-    if (this.view.angle === null) return;
-    this.play(false);
-    this.seek(this.view.angle * DEGREE);
+    if (this.view.angle !== null) this.grasp(this.view.angle);
   }
 
-  /** Give a knob a value; without one, the scene's own. */
-  turn(name, value) {
-    const { [name]: _, ...others } = this.values;
-    this.values = value === undefined ? others : { ...others, [name]: value };
-    this.update();
+  say(sentence, stale) {
+    say(sentence, stale);
+  }
+
+  hold() {
+    this.play(false);
   }
 
   reset() {
@@ -138,30 +112,9 @@ class Page extends Shown {
     this.release();
   }
 
-  /** Compute and draw; where it cannot be, grey the last good picture and say why. */
-  update() {
-    try {
-      this.compute();
-      say("");
-    } catch (refused) {
-      if (!(refused instanceof Refused)) throw refused;
-      return say(refused.message, true);
-    }
-    return this.redraw();
-  }
-
   compute() {
     this.take(this.turner.scene(this.values));
     Object.assign(this, { good: this.values, error: null });
-  }
-
-  /** The second pass, and how far the first was off. */
-  refine() {
-    const [better, { rows }] = [this.refined(), this.cycle];
-    const apart = better.rows.map(({ omega }, k) => Math.abs(omega - rows[k].omega));
-    this.error = Math.max(...apart) / Math.abs(better.mean);
-    this.cycle = better;
-    this.redraw();
   }
 
   redraw() {
@@ -169,25 +122,15 @@ class Page extends Shown {
     if (!cycle) return;
     const k = Math.min(Number(view.cylinder), cycle.train.cylinders.length) - 1;
     const marks = this.drawStage(k, view.forces);
-    for (const name of seenPlots()) this.plots[name].draw(drawn(view[name], cycle, k), marks);
+    for (const name of seenPlots()) {
+      this.plots[PLOTS.indexOf(name)].draw(drawn(view[name], cycle, k), marks);
+    }
     showChoices(given, cycle, { ...given.own, ...view, ...this.values, cylinder: String(k + 1) });
     this.knobs.disable(unused(cycle, given));
-    this.player.slower = showSlower(cycle, (slower) => {
-      this.player.slower = slower;
-    });
+    const { player } = this;
+    player.slower ??= offerSlower(cycle, (slower) => (player.slower = slower));
     showWords(given, cycle, this.error);
     this.seek(this.theta ?? tellingPose(cycle));
-  }
-
-  pose(theta) {
-    this.theta = theta;
-    const degrees = theta / DEGREE;
-    this.stage.pose(theta);
-    for (const name of PLOTS) this.plots[name].place(degrees);
-    find("angle").value = degrees;
-    write(find("degrees"), `${degrees.toFixed(0)}°`);
-    find("angle").setAttribute("aria-valuetext", find("degrees").textContent);
-    write(find("lead"), this.stage.leadInWords(theta));
   }
 
   /** A hand lets go: refine, and keep in the address what is shown. */

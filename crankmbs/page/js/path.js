@@ -2,7 +2,7 @@
 import { countUpTo } from "./arrays.js";
 import { torqueOf, torqueOverAngle } from "./loads.js";
 import { integralTo } from "./rule.js";
-import { givenAt, movingAt } from "./tables.js";
+import { movingAt, unloadedAt } from "./tables.js";
 
 const SAME = 8 * Number.EPSILON; // of a crank angle: rounding, as in crankmbs.motion.cells
 
@@ -27,16 +27,12 @@ export class Path {
     if (k > 0 && sense * theta - this.starts[k] <= SAME * Math.abs(theta)) k--;
     return this.cells[Math.max(k, 0)];
   }
-
-  /** Time [s], speed, acceleration [rad/s, rad/s2], torque from outside [N m] and shares of the
-   * combustion at a crank angle [rad]; of : `movingAt` there. */
-  at(train, theta, of) {
-    return readCell(train, this.rule, this.cellAt(theta), theta, of);
-  }
 }
 
-/** What `Path.at` gives, in a cell. */
-export function readCell(train, rule, cell, theta, of = movingAt(train, theta)) {
+/** Time [s], speed, acceleration [rad/s, rad/s2], torque from outside [N m] and shares of the
+ * combustion on a path at a crank angle [rad]; of : `movingAt` there. */
+export function readPath(train, path, theta, of = movingAt(train, theta)) {
+  const [{ rule }, cell] = [path, path.cellAt(theta)];
   const { from, width, sense, energy, time, first, branch, phases, shares } = cell;
   const x = (theta - from) / width;
   const t = time + Math.abs(width) * integralTo(rule, cell.slowness, first, x);
@@ -44,8 +40,7 @@ export function readCell(train, rule, cell, theta, of = movingAt(train, theta)) 
   const inertia = train.crank.inertia + of.inertia;
   const omega = sense * Math.sqrt((2 * Math.max(kinetic, 0)) / inertia);
   const load = torqueOf(branch, t, omega);
-  const given = givenAt(train, of, cell, omega);
-  const alpha = (given + load - 0.5 * of.slope * omega * omega) / inertia;
+  const alpha = (unloadedAt(train, of, cell, omega) + load) / inertia;
   const outside = load + torqueOverAngle(train.loads, phases, theta);
   return { time: t, theta, omega, alpha, external_torque: outside, shares };
 }

@@ -20,7 +20,14 @@ export class Player {
     return factors.reduce((best, each) => (far(each) < far(best) ? each : best));
   }
 
-  static choices = SLOWER;
+  /** Fill a select with factors of slow motion; chosen(factor) when one is. */
+  static offer(select, chosen, factors = SLOWER) {
+    const named = (rate) => (rate > 1 ? `${rate}× slower` : `${Math.round(1 / rate)}× faster`);
+    for (const rate of factors) {
+      select.append(new Option(rate === 1 ? "real time" : named(rate), String(rate)));
+    }
+    select.addEventListener("change", () => chosen(Number(select.value)));
+  }
 
   play(wanted, theta) {
     if (wanted && !this.playing) {

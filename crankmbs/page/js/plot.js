@@ -6,7 +6,7 @@
 import { drawAxes, frameOf } from "./axis.js";
 import { decimalsFor, padded, readable } from "./format.js";
 import { slid } from "./slide.js";
-import { Pen, add, lineOf, set, watched, write } from "./svg.js";
+import { Pen, add, build, lineOf, listed, set, watched, write } from "./svg.js";
 
 const STRIP = 0.3; // of the height, for the differences
 const NOTHING = 1e-9; // of the largest value: a difference that is none
@@ -91,10 +91,13 @@ export class Plot {
     const below = { ...box, top: split, bottom: foot };
     this.lower = strip ? frameOf(below, seen, { ...about, holds: shape.holdsBelow }) : null;
     this.draws("lower", this.lower, { ...about, last: true, name: "difference" });
-    const lines = this.ghost ? [[this.upper, this.ghost.curve, "ghost"]] : [];
-    shape.curves.forEach((curve, n) => lines.push([this.upper, curve, styleOf(curve, n)]));
-    if (strip) seen.forEach((each) => lines.push([this.lower, each, each.style]));
-    this.drawLines(lines);
+    const pen = new Pen(this.lines);
+    const line = (frame, curve, style) =>
+      pen.add("path", { d: lineOf(curve, frame), class: `curve ${style}` });
+    if (this.ghost) line(this.upper, this.ghost.curve, "ghost");
+    shape.curves.forEach((curve, n) => line(this.upper, curve, styleOf(curve, n)));
+    if (strip) for (const each of seen) line(this.lower, each, each.style);
+    pen.end();
   }
 
   /** Draw axes anew where they differ from those that stand there. */
@@ -110,16 +113,6 @@ export class Plot {
     const as = JSON.stringify([box, x, y, type, marks, last, title, overAngle, right]);
     if (this.axes[`${name} as`] !== as) drawAxes(group, frame, about);
     this.axes[`${name} as`] = as;
-  }
-
-  /** Draw lines, each [frame, curve, style]. */
-  drawLines(lines) {
-    const { lines: group } = this;
-    while (group.children.length > lines.length) group.lastChild.remove();
-    lines.forEach(([frame, curve, style], n) => {
-      const line = group.children[n] ?? add(group, "path");
-      set(line, { d: lineOf(curve, frame), class: `curve ${style}` });
-    });
   }
 
   /** Put the cursor at a crank angle [deg]. */
@@ -159,12 +152,12 @@ export class Plot {
     const hovers = this.hover !== null && !isDiagram(shape);
     const where = hovers ? [[`at ${readable(degrees, 0)}°`, "", ""]] : [];
     const all = [...where, ...entries];
-    while (legend.children.length > all.length) legend.lastChild.remove();
+    const items = listed(legend, all.length, () => entry(legend));
     all.forEach(([name, style, value], n) => {
-      const item = legend.children[n] ?? legend.appendChild(entry());
-      set(item.children[0], { class: style ? `swatch ${style}` : "none" });
-      write(item.children[1], value ? `${name} ` : name);
-      write(item.children[2], value);
+      const [swatch, called, number] = items[n].children;
+      set(swatch, { class: style ? `swatch ${style}` : "none" });
+      write(called, value ? `${name} ` : name);
+      write(number, value);
     });
   }
 
@@ -224,12 +217,9 @@ function sizeOf({ y }) {
   return size;
 }
 
-function entry() {
-  const item = document.createElement("span");
-  item.className = "entry";
-  item.append(document.createElement("i"), document.createElement("span"));
-  item.append(document.createElement("b"));
-  return item;
+function entry(legend) {
+  const item = build(legend, "span", "entry");
+  for (const tag of ["i", "span", "b"]) build(item, tag);
 }
 
 function isDiagram(shape) {

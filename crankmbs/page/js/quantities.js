@@ -1,5 +1,6 @@
 /** What the plots can show: quantities over the crank angle, and diagrams of two of them. */
 import { topPosition } from "./geometry.js";
+import { diagram, overAngle } from "./shapes.js";
 
 const RPM = Math.PI / 30;
 const DEGREE = Math.PI / 180;
@@ -108,24 +109,23 @@ export function choices(scene) {
  * name : of a quantity or diagram; k : number of the cylinder from 0
  */
 export function drawn(name, cycle, k) {
-  return name in DIAGRAMS ? diagram(name, cycle, k) : overAngle(name, cycle, k);
+  return name in DIAGRAMS ? inDiagram(name, cycle, k) : curvesOver(name, cycle, k);
 }
 
-function overAngle(name, cycle, k) {
+function curvesOver(name, cycle, k) {
   const quantity = QUANTITIES[name];
-  const x = cycle.angles.map((theta) => theta / DEGREE);
   const values = curvesOf(quantity, cycle, k);
   const size = Math.max(...values.flatMap(({ y }) => [Math.max(...y), -Math.min(...y)]));
   const { unit, si } = scaled(quantity.unit, quantity.si, size);
-  const curves = values.map(({ name: what, y }) => ({ name: what, x, y: y.map((v) => v / si) }));
-  return {
+  const curves = values.map(({ name: what, y }) => ({ name: what, y: y.map((v) => v / si) }));
+  const pairs = quantity.even ? [] : curves.slice(1); // else the curve again
+  return overAngle(cycle, {
     title: name,
-    up: { text: name, unit },
-    right: { text: "crank angle", unit: "°" },
+    unit,
     curves,
-    differences: quantity.even ? [] : differencesOf(curves), // else the curve again
+    apart: pairs.map((next, n) => [`${curves[n].name} − ${next.name}`, n, n + 1]),
     of: (theta) => read(quantity, cycle, theta, k) / si,
-  };
+  });
 }
 
 /** One value of the run at an angle. */
@@ -149,19 +149,7 @@ function curvesOf(quantity, cycle, k) {
   return found;
 }
 
-/** Each curve less the one after it. */
-function differencesOf(curves) {
-  return curves.slice(1).map((next, n) => {
-    const before = curves[n];
-    return {
-      name: `${before.name} − ${next.name}`,
-      x: before.x,
-      y: before.y.map((value, i) => value - next.y[i]),
-    };
-  });
-}
-
-function diagram(name, cycle, k) {
+function inDiagram(name, cycle, k) {
   const { right, up, crankEnd, equal = false, cylinder = false } = DIAGRAMS[name];
   const double = crankEnd && cycle.train.crank_end.length > 0;
   const own = double ? "head end" : CURVES[0];
@@ -176,18 +164,17 @@ function diagram(name, cycle, k) {
   const sizes = equal ? [Math.max(size, wide), Math.max(size, wide)] : [wide, size];
   const scales = [right, up].map(([, unit, si], n) => scaled(unit, si, sizes[n]));
   const over = (values, n) => values.map((value) => value / scales[n].si);
-  return {
+  return diagram({
     title: name,
     equal,
     right: { text: right[0], unit: scales[0].unit },
     up: { text: up[0], unit: scales[1].unit },
     curves: pairs.map((each) => ({ ...each, x: over(each.x, 0), y: over(each.y, 1) })),
-    differences: [],
     of: (theta) => {
       const v = cycle.at(theta);
       return [right[3](v, k, cycle) / scales[0].si, up[3](v, k, cycle) / scales[1].si];
     },
-  };
+  });
 }
 
 function along(samples, right, up, k, cycle) {

@@ -3,6 +3,8 @@
  * and to_legendre (s x s, node values to coefficients of shifted Legendre polynomials).
  */
 
+import { eliminate } from "./arrays.js";
+
 /** Integral from 0 to x of the polynomial through values at the nodes, of which those from
  * number `first` on are meant. */
 export function integralTo(rule, values, first, x) {
@@ -28,12 +30,29 @@ function coefficient(rule, values, first, j) {
   return sum;
 }
 
-/** Fill a matrix with that of E - width A (rate E) in a cell; its rates begin at number `first`. */
-export function fillSystem(system, { matrix, nodes: { length: s } }, width, rate, first = 0) {
-  for (let j = 0; j < s; j++) {
-    for (let i = 0; i < s; i++) {
-      system[j * s + i] = (i === j ? 1 : 0) - width * matrix[j * s + i] * rate[first + i];
+/** Solves cells of dE/dtheta = push + rate E. */
+export class LinearCell {
+  constructor(rule) {
+    const s = rule.nodes.length;
+    this.rule = rule;
+    [this.system, this.found] = [new Float64Array(s * s), new Float64Array(2 * s)];
+  }
+
+  /** The energies at the nodes of a cell, each as gain and shift of that at its begin, E_j =
+   * gain E + shift; push and rate begin at number `first`. */
+  solve(width, push, rate, first = 0) {
+    const { rule: { matrix, nodes: { length: s } }, system, found } = this;
+    for (let j = 0; j < s; j++) {
+      found[2 * j] = 1;
+      found[2 * j + 1] = 0;
+      for (let i = 0; i < s; i++) {
+        const part = width * matrix[j * s + i];
+        system[j * s + i] = (i === j ? 1 : 0) - part * rate[first + i];
+        found[2 * j + 1] += part * push[first + i];
+      }
     }
+    eliminate(system, found, s, 2);
+    return found;
   }
 }
 

@@ -10,7 +10,7 @@ import { countUpTo } from "./arrays.js";
 import { SLOW } from "./cell.js";
 import { branchAt, firstPhases } from "./loads.js";
 import { Travel } from "./motion.js";
-import { givenAt, reduceAt } from "./tables.js";
+import { reduceAt, unloadedAt } from "./tables.js";
 
 const NONE = 1e-11; // of the energy: nothing but rounding
 const SHOTS = 400;
@@ -56,8 +56,7 @@ export class Section {
   branch(omega) {
     const { train, phases, sense } = this;
     const of = reduceAt(train, this.theta);
-    const given = givenAt(train, of, { shares: [], phases, sense }, omega);
-    const rest = given - 0.5 * of.slope * omega * omega;
+    const rest = unloadedAt(train, of, { shares: [], phases, sense }, omega);
     return branchAt(train.loads, phases, 0, omega, rest);
   }
 
@@ -90,16 +89,8 @@ export class Section {
     }
     if (!balanced && !(rise > 0)) return this.found("decays");
     const motion = balanced ? this.withMean(period, start.speed) : period.sweep(-rise / growth);
-    const slow = !(motion.least > SLOW * this.largest(branch));
+    const slow = !(motion.least > SLOW * period.largest());
     return this.found(slow ? "slow" : "complete", motion, { factor: 1 + growth, balanced });
-  }
-
-  /** The largest torque over the angle with that of a branch at rest [N m]. */
-  largest(branch) {
-    const { nodes } = this.grid;
-    let most = 0;
-    for (let n = 0; n < nodes.length; n++) most = Math.max(most, Math.abs(nodes.at(n).torque));
-    return most + Math.abs(branch.c0);
   }
 
   /** The motion of which a period lasts as long as at a mean speed [rad/s], by Newton's method: the

@@ -2,8 +2,8 @@
 
 const DEGREE = Math.PI / 180;
 
-/** Curves over the crank angle, each { name, style, of(variables) } in `unit`, or but for the first
- * with values y at the samples in place of `of`.
+/** Curves over the crank angle, each { name, style, of(variables) } in `unit`, or with values y at
+ * the samples in place of `of`; of : its value at a crank angle [rad], where the first has those.
  *
  * apart : [name, n, m] of differences of curves that stand below; holds, holdsBelow : values in the
  * range of the axes
@@ -30,6 +30,11 @@ export function overAngle(cycle, { title, unit, curves, apart = [], ...about }) 
  * the dot stands at a crank angle [rad], [x, y] */
 export function diagram({ title, right, up, curves, of, ...about }) {
   return { title, right, up, curves, differences: [], of, ...about };
+}
+
+/** The rod ratio of a cycle's first cylinder. */
+export function ratioOf({ train: { shape } }) {
+  return shape.radius / shape.length;
 }
 
 /** So many values from one to another. */

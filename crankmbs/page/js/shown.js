@@ -3,19 +3,54 @@ import { cycleOf } from "./cycle.js";
 import { dragged } from "./drag.js";
 import { Engine } from "./engine.js";
 import { deadCentres } from "./geometry.js";
+import { Knobs } from "./knobs.js";
+import { Player } from "./player.js";
+import { refusalOf } from "./refused.js";
 import { Stage } from "./stage.js";
+import { write } from "./svg.js";
 import { deadCentreMarks } from "./words.js";
 
+const DEGREE = Math.PI / 180;
 const LATER = 100; // ms after a knob is let go: the second pass
 
-/** What the page and a lesson's figures have in common. They have `turn(name, value)`, `redraw()`,
- * `refine()` and `pose(theta)`, and a `player` and `knobs`. */
+/** What the page and a lesson's figures have in common. They have `compute()`, `redraw()`, `plots`,
+ * `say(sentence, whether the picture is another one)`, `hold()` for a hand and `release()`. */
 export class Shown {
-  /** given : what Python wrote into the page; turned : the knobs that it has, of those */
-  constructor(given, turned) {
-    Object.assign(this, { given, turned, values: {}, cycle: null, theta: null, stage: null });
+  /** given : what Python wrote into the page; turned : the knobs that it has, of those; part(name):
+   * an element, or null; words : of the button that plays */
+  constructor(given, turned, part, words = {}) {
+    Object.assign(this, { given, turned, part, values: {} });
+    Object.assign(this, { cycle: null, theta: null, stage: null });
     this.quick = new Engine(given.rules);
     this.careful = new Engine(given.rules);
+    const [cycle, move] = [() => this.cycle, (theta) => this.pose(theta)];
+    this.player = new Player({ cycle, move, button: part("play"), ...words });
+    part("play")?.addEventListener("click", () => this.toggle());
+    part("angle")?.addEventListener("input", ({ target }) => this.grasp(Number(target.value)));
+    part("angle")?.addEventListener("change", () => this.release());
+  }
+
+  /** Make the knobs { knobs, sentences, first }. */
+  listenTo(root, knobs) {
+    this.knobs = new Knobs(root, knobs, {
+      turn: (name, value) => this.turn(name, value),
+      release: () => this.release(),
+      refuse: (sentence) => this.say(sentence),
+    });
+  }
+
+  /** Give a knob a value; without one, the scene's own. */
+  turn(name, value) {
+    const { [name]: _, ...others } = this.values;
+    this.values = value === undefined ? others : { ...others, [name]: value };
+    this.update();
+  }
+
+  /** Compute and draw; where it cannot be, keep the last good picture and say why. */
+  update() {
+    const reason = refusalOf(() => this.compute());
+    this.say(reason ?? "", reason !== null);
+    if (reason === null) this.redraw();
   }
 
   /** Compute the cycle of a scene quickly. */
@@ -31,20 +66,24 @@ export class Shown {
     if (rough) this.later = setTimeout(() => this.refine(), LATER);
   }
 
-  refined() {
-    const { cycle, given: { endings } } = this;
-    return cycleOf(this.careful, cycle.scene, endings, { fine: true, warm: cycle });
+  /** The second pass, and how far the first was off. */
+  refine() {
+    const { cycle: quick, given: { endings } } = this;
+    this.cycle = cycleOf(this.careful, quick.scene, endings, { fine: true, warm: quick });
+    const apart = this.cycle.rows.map(({ omega }, k) => Math.abs(omega - quick.rows[k].omega));
+    this.error = Math.max(...apart) / Math.abs(this.cycle.mean);
+    this.redraw();
   }
 
-  /** Show the mechanism in an svg; a hand that takes it stops the player by hold(). */
-  draggedOn(svg, hold, release) {
+  /** Show the mechanism in an svg. */
+  draggedOn(svg) {
     this.stage = new Stage(svg, this.given.compression, () => this.cycle && this.redraw());
     dragged(this.stage, {
       theta: () => this.theta,
       turn: (theta) => this.seek(theta),
       rim: (ratio) => this.turnRim(ratio),
-      grip: (kind) => kind !== "rim" && hold(),
-      release,
+      grip: (kind) => kind !== "rim" && this.hold(),
+      release: () => this.release(),
     });
   }
 
@@ -68,13 +107,42 @@ export class Shown {
     this.knobs.show(this.values);
   }
 
+  /** Turn to a crank angle [deg] that a hand wants; null where it lets go. */
+  grasp(degrees) {
+    if (degrees === null) return this.release();
+    this.hold();
+    return this.seek(degrees * DEGREE);
+  }
+
   /** Turn to a crank angle [rad], back into the cycle that is shown. */
   seek(theta) {
     this.pose(this.cycle.within(theta));
     this.player.seek(this.theta);
   }
 
+  pose(theta) {
+    const { stage, part } = this;
+    this.theta = theta;
+    const degrees = theta / DEGREE;
+    stage?.pose(theta);
+    for (const plot of this.plots) plot.place(degrees);
+    if (part("lead")) write(part("lead"), stage.leadInWords(theta));
+    if (!part("angle")) return;
+    part("angle").value = degrees;
+    write(part("degrees"), `${degrees.toFixed(0)}°`);
+    part("angle").setAttribute("aria-valuetext", part("degrees").textContent);
+  }
+
   play(wanted) {
     this.player.play(wanted, this.theta);
+  }
+
+  toggle() {
+    this.play(!this.player.playing);
+  }
+
+  /** Whether one wants nothing to move by itself. */
+  get still() {
+    return matchMedia("(prefers-reduced-motion: reduce)").matches;
   }
 }

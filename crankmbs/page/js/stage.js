@@ -55,12 +55,14 @@ export class Stage {
   measure(cycle, body, k) {
     [this.largest, this.letters] = [0, 0];
     if (!BODIES.includes(body)) return;
+    let square = 0;
     for (const v of cycle.samplesOf(body === "crank" ? null : k)) {
-      for (const { name, force } of forcesOn(body, this.train, v, k)) {
-        this.largest = Math.max(this.largest, Math.hypot(...force));
+      for (const { name, force: [x, y] } of forcesOn(body, this.train, v, k)) {
+        square = Math.max(square, x * x + y * y);
         this.letters = Math.max(this.letters, name.length);
       }
     }
+    this.largest = Math.sqrt(square);
   }
 
   /** How long the arrow of a force [N] is drawn: by its root, so that small ones show where to. */

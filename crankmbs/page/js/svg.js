@@ -11,11 +11,25 @@ export function add(parent, tag, attributes = {}, text = null) {
   return made;
 }
 
-/** Set attributes; those that are so already are let alone, as others would be parsed anew. */
+/** A new element of HTML below another. */
+export function build(parent, tag, className = "") {
+  return parent.appendChild(Object.assign(document.createElement(tag), { className }));
+}
+
+/** So many elements below another, those that are there and others that make() adds. */
+export function listed(parent, count, make) {
+  while (parent.children.length > count) parent.lastChild.remove();
+  while (parent.children.length < count) make();
+  return parent.children;
+}
+
+/** Set attributes; those that it set so already are let alone, as others would be parsed anew. */
 export function set(element, attributes) {
+  const own = (element.shown ??= {});
   for (const name in attributes) {
-    const value = String(attributes[name]);
-    if (element.getAttribute(name) !== value) element.setAttribute(name, value);
+    if (own[name] === attributes[name]) continue;
+    own[name] = attributes[name];
+    element.setAttribute(name, own[name]);
   }
   return element;
 }

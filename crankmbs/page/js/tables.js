@@ -15,6 +15,7 @@ const WIDEST = (6 * Math.PI) / 180;
 const SLIVER = 1e-12; // rad: two edges closer than this are one
 const NOTHING = []; // thousands of nodes share it
 const WEIGHTLESS = [0, 0];
+const ONE = pushColumns(1, massColumns(1)); // the place of a single angle
 
 /** Gravity [m/s2] in the frame of a cylinder at this bank [rad]. */
 export function gravityVector(gravity, bank) {
@@ -35,58 +36,82 @@ export function reduceAt(train, theta) {
 
 /** The same without the crank's inertia. */
 export function movingAt(train, theta) {
-  const { crank, cylinders, gravity, friction, pressure, firing } = train;
-  const gas = friction?.ring_pressure && pressure.length ? [] : NOTHING;
-  const burning = firing.length ? [] : NOTHING;
-  let [inertia, slope, rings, drag] = [0, 0, 0, 0];
-  let torque = crankWeight(crank, gravity, theta);
-  for (let k = 0; k < cylinders.length; k++) {
-    const phi = theta + cylinders[k].phase;
-    const masses = massesAt(train, k, phi);
-    const push = pushAt(train, k, phi, masses.x, masses.x1);
-    inertia += masses.inertia;
-    slope += masses.slope;
-    torque += masses.weight + push.torque;
-    rings += push.rings;
-    drag += push.drag;
-    if (gas !== NOTHING) gas.push(push.gas);
-    if (burning !== NOTHING) burning.push(push.combustion);
-  }
-  return { theta, inertia, slope, torque, combustion: burning, gas, rings, drag };
+  const row = rowOf(train, theta);
+  train.cylinders.forEach(({ phase }, k) => {
+    fillMasses(train, k, theta + phase, ONE.masses, 0);
+    fillPushes(train, k, theta + phase, ONE, 0);
+    addCylinder(row, k, ONE, 0);
+  });
+  return row;
 }
 
-/** What pushes the piston of cylinder k at a cycle angle [rad] does to the crank: torque of gas and
- * forces, that of the gas alone and what combustion adds, rings and drag. */
-export function pushAt({ gears, friction, pressure, firing }, k, phi, x, x1) {
-  const { piston, drag } = gears[k];
-  const lever = -piston.area * x1;
-  const gas = pressure.length ? lever * valueAt(pressure[k], phi) : 0;
-  const { steady, jumping } = appliedAt(gears[k], { phi, x, x1 });
+/** The row of the crank alone at an angle, to which cylinders are added. */
+export function rowOf({ crank, cylinders, gravity, friction, pressure, firing }, theta) {
+  const each = (there) => (there ? cylinders.map(() => 0.5) : NOTHING);
   return {
-    torque: gas - x1 * steady,
-    gas,
-    combustion: firing.length ? lever * valueAt(firing[k], phi) - gas : 0,
-    rings: Math.abs(x1) * ((friction?.ring_force ?? 0) + jumping),
-    drag: drag * x1 * x1,
+    theta, inertia: 0, slope: 0, torque: crankWeight(crank, gravity, theta), rings: 0, drag: 0,
+    gas: each(friction?.ring_pressure && pressure.length), combustion: each(firing.length),
   };
 }
 
-/** What the masses of cylinder k are at a cycle angle [rad]: its share of inertia and slope, and
- * the torque of its weights; with the piston's position and its derivative. */
-export function massesAt({ gears, cylinders, gravity }, k, phi) {
+/** Add cylinder k with what stands at place n of its columns. */
+export function addCylinder(row, k, pushes, n) {
+  const { masses } = pushes;
+  const at = n % masses.x.length;
+  row.inertia += masses.inertia[at];
+  row.slope += masses.slope[at];
+  row.torque += masses.weight[at] + pushes.torque[n];
+  row.rings += pushes.rings[n];
+  row.drag += pushes.drag[n];
+  if (row.gas.length) row.gas[k] = pushes.gas[n];
+  if (row.combustion.length) row.combustion[k] = pushes.combustion[n];
+}
+
+/** Columns of so many numbers, for masses as `fillMasses` writes them. */
+export function massColumns(count) {
+  return columns(["x", "x1", "inertia", "slope", "weight"], count);
+}
+
+/** The same for what pushes a piston, in a number of turns; masses : those of a turn. */
+export function pushColumns(count, masses) {
+  return { masses, ...columns(["torque", "gas", "combustion", "rings", "drag"], count) };
+}
+
+function columns(names, count) {
+  return Object.fromEntries(names.map((name) => [name, new Float64Array(count)]));
+}
+
+/** Write at place n what pushes the piston of cylinder k at a cycle angle [rad] does to the crank:
+ * torque of gas and forces, that of the gas alone and what combustion adds, rings and drag. */
+export function fillPushes({ gears, friction, pressure, firing }, k, phi, to, n) {
+  const { piston, drag } = gears[k];
+  const { masses } = to;
+  const at = n % masses.x.length;
+  const [x, x1] = [masses.x[at], masses.x1[at]];
+  const lever = -piston.area * x1;
+  const gas = pressure.length ? lever * valueAt(pressure[k], phi) : 0;
+  const { steady, jumping } = appliedAt(gears[k], phi, x, x1);
+  to.torque[n] = gas - x1 * steady;
+  to.gas[n] = gas;
+  to.combustion[n] = firing.length ? lever * valueAt(firing[k], phi) - gas : 0;
+  to.rings[n] = Math.abs(x1) * ((friction?.ring_force ?? 0) + jumping);
+  to.drag[n] = drag * x1 * x1;
+}
+
+/** Write at place n what the masses of cylinder k are at a cycle angle [rad]: its share of inertia
+ * and slope, and the torque of its weights; with the piston's position and its derivative. */
+export function fillMasses({ gears, cylinders, gravity }, k, phi, to, n) {
   const { rod, piston, loop } = gears[k];
   const at = loop.at(phi);
   const g = rodCentre(at, rod.center_of_mass);
-  let inertia = piston.mass * at.x1 * at.x1 + rod.mass * (g.x1 * g.x1 + g.y1 * g.y1);
-  inertia += rod.inertia * at.beta1 * at.beta1;
-  let slope = 2 * (piston.mass * at.x1 * at.x2 + rod.mass * (g.x1 * g.x2 + g.y1 * g.y2));
-  slope += 2 * rod.inertia * at.beta1 * at.beta2;
-  let weight = 0;
-  if (gravity !== null) {
-    const [ax, ay] = gravityVector(gravity, cylinders[k].bank);
-    weight = piston.mass * ax * at.x1 + rod.mass * (ax * g.x1 + ay * g.y1);
-  }
-  return { x: at.x, x1: at.x1, inertia, slope, weight };
+  to.x[n] = at.x;
+  to.x1[n] = at.x1;
+  to.inertia[n] = piston.mass * at.x1 * at.x1 + rod.mass * (g.x1 * g.x1 + g.y1 * g.y1) +
+    rod.inertia * at.beta1 * at.beta1;
+  to.slope[n] = 2 * (piston.mass * at.x1 * at.x2 + rod.mass * (g.x1 * g.x2 + g.y1 * g.y2)) +
+    2 * rod.inertia * at.beta1 * at.beta2;
+  const [ax, ay] = gravityVector(gravity, cylinders[k].bank);
+  to.weight[n] = piston.mass * ax * at.x1 + rod.mass * (ax * g.x1 + ay * g.y1);
 }
 
 /** Torque of gas, weights, friction and loads over the angle [N m] at an angle that is reduced, at
@@ -97,8 +122,13 @@ export function givenAt({ friction, loads }, of, { shares, phases, sense }, omeg
   return of.torque + burnt(of.combustion, shares) + over - sense * rings - of.drag * omega;
 }
 
+/** The same less J' omega^2 / 2: with the other loads it accelerates the crank [N m]. */
+export function unloadedAt(train, of, state, omega) {
+  return givenAt(train, of, state, omega) - 0.5 * of.slope * omega * omega;
+}
+
 /** Torque of the crank's own weight at a crank angle [N m]. */
-export function crankWeight(crank, gravity, theta) {
+function crankWeight(crank, gravity, theta) {
   if (gravity === null) return 0;
   const [gx, gy] = gravityVector(gravity, 0);
   const first = crank.mass * crank.center_of_mass;
@@ -124,12 +154,12 @@ export function rodCentre(at, a) {
 }
 
 /** The edges of the cells of one period [rad]: at the knots of pressures and of loads over the
- * angle, at decisions on the fuel and around folds, no cell wider than 6 degrees.
+ * angle, at decisions on the fuel and around folds, no cell wider than so many.
  *
  * cycles : over the cycle angle, of one cylinder after the other, and so on
  * marks : knots [rad], of cycles over the crank angle and decisions
  */
-export function edgesOf(shapes, cylinders, cycles, marks, period) {
+export function edgesOf(shapes, cylinders, cycles, marks, period, widest = WIDEST) {
   const found = [0, period];
   shapes.forEach((shape, k) => found.push(...nearFolds(shape, cylinders[k], period)));
   for (const each of marks) for (const mark of each) found.push(mark);
@@ -139,8 +169,8 @@ export function edgesOf(shapes, cylinders, cycles, marks, period) {
   });
   const edges = distinct(found, SLIVER);
   edges[edges.length - 1] = period;
-  const widest = (k) => Math.max(Math.ceil((edges[k + 1] - edges[k]) / WIDEST - 1e-9), 1);
-  return split(edges, Array.from({ length: edges.length - 1 }, (_, k) => widest(k)));
+  const parts = (k) => Math.max(Math.ceil((edges[k + 1] - edges[k]) / widest - 1e-9), 1);
+  return split(edges, Array.from({ length: edges.length - 1 }, (_, k) => parts(k)));
 }
 
 /** Every cell cut into equal parts, as many as `parts` says. */

@@ -84,7 +84,7 @@ export class TimePlot {
     const [low, high] = [Math.min(...curve.y), Math.max(...curve.y)];
     const holds = { y: [high + (share / (1 - share)) * (high - low)] };
     const shape = { curves: [curve], right: { text: "time", unit: "s" } };
-    const about = { type, shape, marks: [], overAngle: false, left: box.left };
+    const about = { type, shape, overAngle: false, left: box.left };
     this.frame = frameOf(box, [curve], { shape, overAngle: true, holds });
     drawAxes(this.axes[0], this.frame, { ...about, last: !fuel, name: "crank speed [rpm]" });
     set(this.line, { d: lineOf(curve, this.frame) });

@@ -1,6 +1,6 @@
 /** A run between its frames, as the stage takes a cycle: its crank train and where that is. */
 import { countUpTo } from "./arrays.js";
-import { Loop, runningGear } from "./geometry.js";
+import { Loop, runningGear, shapeOf } from "./geometry.js";
 
 const NO_GAS = { gas_pressure: 0 };
 
@@ -10,7 +10,7 @@ export class Track {
   constructor(given) {
     const { cylinders } = given.scene;
     const gears = runningGear(given.scene).map((part) => {
-      const shape = { radius: part.radius, length: part.rod.length, offset: part.piston.offset };
+      const shape = shapeOf(part);
       return { ...part, shape, loop: new Loop(shape) };
     });
     this.given = given;

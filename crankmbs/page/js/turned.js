@@ -4,7 +4,7 @@
 import { remembering } from "./arrays.js";
 import { filled } from "./format.js";
 import { setFree } from "./freed.js";
-import { strokeOf } from "./geometry.js";
+import { runningGear, shapeOf, strokeOf } from "./geometry.js";
 import { Refused } from "./refused.js";
 
 const RPM = Math.PI / 30;
@@ -35,7 +35,7 @@ export class Turner {
     const piston = { ...scene.piston };
     if ("offset" in values) piston.offset = at.offset * MM;
     const cylinders = this.layout(values);
-    const gears = cylinders.map(({ own }) => own ?? { radius: crank.radius, rod, piston });
+    const gears = runningGear({ crank, rod, piston, cylinders });
     for (const gear of gears) refuseOpenLoop(gear, sentences);
     refuseLightCrank(crank, sentences);
     refuseUncovered(scene.force, gears, sentences);
@@ -126,8 +126,7 @@ function refuseUncovered(force, gears, sentences) {
   force.forEach(({ rows, cylinder }, number) => {
     if (rows === null) return;
     const on = cylinder === null ? gears : [gears[cylinder - 1]];
-    const stroke = Math.max(...on.map(({ radius, rod, piston }) =>
-      strokeOf({ radius, length: rod.length, offset: piston.offset })));
+    const stroke = Math.max(...on.map((gear) => strokeOf(shapeOf(gear))));
     const [low, high] = [rows[0], rows[rows.length - 1]];
     if (low <= SPARE * stroke && high >= (1 - SPARE) * stroke) return;
     const found = { stroke: stroke / MM, low: low / MM, high: high / MM };
