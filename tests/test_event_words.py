@@ -75,6 +75,7 @@ def test_a_crank_that_turns_back_before_the_dead_centre_has_not_fired(weak, tmp_
     assert "the engine did not fire: the crank reached no firing dead centre with fuel" in said
 
 
+@pytest.mark.slow
 def test_what_is_said_of_the_whole_run_is_not_read_from_its_end(tmp_path):
     """With every = "none" the last cycle alone is kept; a first firing before it is not known."""
     scene = load_scene("run_up").with_(run__until="0.6 s")

@@ -126,6 +126,7 @@ def test_the_command_names_the_first_and_the_last_firing(tmp_path, monkeypatch):
         assert "decides q" not in said
 
 
+@pytest.mark.slow
 def test_the_command_says_where_the_rest_of_the_events_is(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     said = crankmbs_("run", "run_down", "--no-figures").stdout

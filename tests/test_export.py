@@ -8,6 +8,7 @@ import re
 import runpy
 import subprocess
 import sys
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 
@@ -76,6 +77,12 @@ SCENES = {
 }
 
 
+@cache
+def text_of(name):
+    """The script of one of the scenes."""
+    return exudyn_script(SCENES[name], "mine")
+
+
 def made(scene):
     """The names of a script, which has not run."""
     names = {"__name__": "script"}
@@ -141,7 +148,7 @@ def test_the_script_gives_the_motion_within_the_error_that_it_states(name, tmp_p
 
 def test_the_head_says_that_steps_pass_over_jumps():
     said = "Forces jump at some crank angles, and the steps pass over the jumps"
-    saying = {name for name in SCENES if said in exudyn_script(SCENES[name], "mine")}
+    saying = {name for name in SCENES if said in text_of(name)}
     assert saying == {"template", "v_twin", "jumps at dead centres", "jumps in mid-stroke"}
 
 
@@ -156,7 +163,7 @@ def test_a_start_on_a_jump_has_the_forces_of_the_side_to_which_the_crank_moves(s
 
 @pytest.mark.parametrize("name", SCENES)
 def test_a_script_has_no_name_that_it_does_not_use(name):
-    tree = ast.parse(exudyn_script(SCENES[name], "mine"))
+    tree = ast.parse(text_of(name))
     stored = [
         target.id
         for node in tree.body
@@ -182,7 +189,7 @@ def test_a_script_has_no_name_that_it_does_not_use(name):
 
 
 def test_the_script_quotes_the_model():
-    text = exudyn_script(TORQUE_DRIVEN, "mine")
+    text = text_of("torque_driven")
     assert inspect.getsource(build) in text
     assert repr(mechanism_of(TORQUE_DRIVEN).hinges[1]) in text
 

@@ -217,24 +217,24 @@ def test_held_at_rest_until_a_load_exceeds_it():
     np.testing.assert_allclose(data["applied_force"].values[t > free + 1e-3, 0][:3], -100.0)
 
 
-@pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
+@pytest.mark.parametrize(
+    "formulation", [pytest.param("crank_angle", marks=pytest.mark.slow), "minimal"]
+)
 def test_a_function_with_its_kinks_costs_what_the_table_does(formulation):
     """It turns back, swings and is held at rest by friction and by its jump with the velocity. A
     step over time that passes a kink must not feel it, and a crank at rest not move to and fro."""
     travel, ways = (0.0, 0.03, 0.03, 0.09), ((2.0, 2.0, -1.0, -1.0), (2.0, 2.0, 4.0, 4.0))
-    table = TravelTable(file=CylinderTable(travel, ways))
 
     def push(t, cycle_angle, displacement, velocity):
         return 2.0 if displacement < 0.03 else -1.0 if velocity > 0.0 else 4.0
 
-    force = Force(push, kink_displacements=(0.03,))
     scene = replace(
-        machine(table, speed=4.0, until="20 s"),
+        machine(TravelTable(file=CylinderTable(travel, ways)), speed=4.0, until="20 s"),
         friction=Friction(ring_force=1.5),
         gravity=Gravity(acceleration=9.81, angle=-math.pi / 2),
     )
-    of_table = simulate(scene, formulation=formulation)
-    result = simulate(scene.with_(force=(force,)), formulation=formulation)
+    pushed = scene.with_(force=(Force(push, kink_displacements=(0.03,)),))
+    of_table, result = (simulate(each, formulation=formulation) for each in (scene, pushed))
     assert result.message.startswith(of_table.message)
     assert result.message.startswith("at rest at")
     assert list(result.events["kind"].values) == list(of_table.events["kind"].values)

@@ -139,7 +139,10 @@ def test_a_run_that_speeds_up_has_peaks_of_the_whole_run():
     assert "changes by +131 rpm over the last cycle" in unsteady(result, found)
 
 
-@pytest.mark.parametrize(("force", "kind"), [(15.0, "reversal"), (60.0, "load off")])
+@pytest.mark.parametrize(
+    ("force", "kind"),
+    [pytest.param(15.0, "reversal", marks=pytest.mark.slow), (60.0, "load off")],
+)
 def test_a_run_shorter_than_a_cycle_that_rests_is_not_periodic(force, kind):
     """The crank swings, or is pushed and rubs to rest: at either end its speed is 0, so that it
     does not drift."""

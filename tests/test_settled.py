@@ -233,6 +233,7 @@ def test_of_a_motor_too_weak_it_is_said_when_the_crank_stops(inertia: float) -> 
     assert math.degrees(speed.crank_angle.values[stop - 1]) <= float(said[2]) + 0.01
 
 
+@pytest.mark.slow
 def test_a_crank_without_a_flywheel_stops_in_its_first_cycle_and_that_is_the_reason() -> None:
     """The load is the same with which the shipped engine settles at 3,190 rpm."""
     scene = load_scene("propeller").with_(crank__inertia=0.0, run__until="settled")

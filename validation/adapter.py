@@ -7,6 +7,7 @@ those are held against the polytropes in a claim of their own.
 
 import math
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,9 +114,8 @@ def reference_motion(
     scene = scene or result.scene
     if scene.motion is not None:
         return _prescribed(result, scene.motion)
-    assert scene.start is not None
-    start, times = scene.start, arithmetic.array(result.data["time"].values)
-    path = path or series_path(machine_of(scene), start.angle, start.speed, arithmetic=arithmetic)
+    times = arithmetic.array(result.data["time"].values)
+    path = path or _path(scene, arithmetic)
     if times[-1] == 0:
         return _first(path.at_times(arithmetic.array([0, 2.0**-60])))
     motion = path.at_times(times)
@@ -129,6 +129,14 @@ def reference_motion(
         times[moving] = times[moving] + late
         motion = path.at_times(times)
     return motion
+
+
+@lru_cache(maxsize=1)  # formulations are held against it one after the other
+def _path(scene: Scene, arithmetic: Arithmetic) -> Path:
+    """Of a free crank, from the start of a scene."""
+    assert scene.start is not None
+    machine, start = machine_of(scene), scene.start
+    return series_path(machine, start.angle, start.speed, arithmetic=arithmetic)
 
 
 def _on_angles(result: Result, scene: Scene) -> NDArray[np.bool_]:

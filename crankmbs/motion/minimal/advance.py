@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.integrate import DOP853, Radau
+from scipy.integrate import Radau
 
 from crankmbs.mechanics.torque import Branch
 from crankmbs.motion.base import State
@@ -25,6 +25,7 @@ from crankmbs.motion.minimal.equation import Equation, enter
 from crankmbs.motion.minimal.exits import first_exit, interpolant, value
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.minimal.segment import StepSizes, TimeSegment, Track
+from crankmbs.motion.minimal.step_by_step import StepByStep
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics.arrays import Array
 
@@ -162,6 +163,8 @@ class _Walk:
         self._steps: list[tuple[float, float, Array]] = []
         branch = equation.branch
         self._speeds = 0.0, branch.omega_low, branch.omega_high
+        self._origin = begin.time, self._y  # of a step: its time and state, the angle as in slopes
+        self._steps_of_dop853: StepByStep | None = None
 
     def track(self) -> Track:
         """The steps, up to the end of the segment."""
@@ -182,8 +185,12 @@ class _Walk:
 
     def _step(self) -> bool:
         """The next step; whether the segment goes on."""
-        width, left = self._width(), self._control.bound - self._time
-        step = self._tried(width)
+        for function in self._equation.branch.functions:
+            function.failure = ""
+        self._origin = self._time, self._y - [self._equation.piece.middle, 0.0, 0.0]
+        slopes = self._equation.slopes(*self._origin)
+        width, left = self._width(float(slopes[1])), self._control.bound - self._time
+        step = self._tried(width, slopes)
         if step is None:
             return False
         self._h, begin, self._at_knot = step.h, self._time, False
@@ -197,30 +204,17 @@ class _Walk:
             self._time = self._control.bound
         return True
 
-    def _tried(self, width: float) -> _Step | None:
-        """A step no longer than this [s]; None where none is short enough."""
-        equation, control, middle = self._equation, self._control, self._equation.piece.middle
-        time, y = self._time, self._y - [middle, 0.0, 0.0]
+    def _tried(self, width: float, slopes: Array) -> _Step | None:
+        """A step no longer than this [s], with these slopes at its begin; None where none is short
+        enough."""
+        equation, control, time = self._equation, self._control, self._time
         theta, omega, _ = self._y.tolist()
-        begin, functions = State(time, theta, omega, 0.0), equation.branch.functions
-        for function in functions:
-            function.failure = ""
+        begin = State(time, theta, omega, 0.0)
         stiff = equation.is_stiff(begin, control.tolerance * control.speed)
-        method: Any = Radau if stiff else DOP853
-        tolerance = max(control.tolerance, _RADAU if stiff else _FINEST)
-        absolute = tolerance if stiff else control.tolerance
-        solver = method(  # of what a step adds: relative to the values SciPy asks for 100 roundings
-            lambda t, gained: equation.slopes(time + t, y + gained),
-            0.0,
-            np.zeros(3),
-            width,
-            first_step=width,
-            max_step=width,
-            rtol=tolerance,
-            atol=np.array([absolute, absolute * control.speed, math.inf]),
-        )
+        solver = self._solver_of(Radau, width) if stiff else self._dop853(width, slopes)
         failed = solver.step()
         self._evaluations += solver.nfev
+        functions = equation.branch.functions
         lost = any(function.failure for function in functions) and solver.t < _LOST * time
         if failed or lost or (solver.t < width and time + solver.t == time):
             return None
@@ -231,11 +225,42 @@ class _Walk:
         first = first_exit(row, (low, high), self._speeds)
         return _Step(row, float(solver.t), solver.y, float(solver.h_abs), *first)
 
-    def _width(self) -> float:
-        """Length of the next step [s]: what the errors allow, and not much beyond the next knot."""
-        equation, control, piece = self._equation, self._control, self._equation.piece
+    def _dop853(self, width: float, slopes: Array) -> Any:
+        """Made once, then set back: to make one takes a tenth of a step."""
+        if self._steps_of_dop853 is None:
+            self._steps_of_dop853 = self._solver_of(StepByStep, width)
+        else:
+            self._steps_of_dop853.again(width, slopes)
+        return self._steps_of_dop853
+
+    def _solver_of(self, method: Any, width: float) -> Any:
+        """Of what a step adds: relative to the values SciPy asks for 100 roundings."""
+        control, stiff = self._control, method is Radau
+        tolerance = max(control.tolerance, _RADAU if stiff else _FINEST)
+        absolute = tolerance if stiff else control.tolerance
+        return method(
+            self._slopes_after,
+            0.0,
+            np.zeros(3),
+            width,
+            first_step=width,
+            max_step=width,
+            rtol=tolerance,
+            atol=np.array([absolute, absolute * control.speed, math.inf]),
+        )
+
+    def _slopes_after(self, t: float, gained: Array) -> Array:
+        """So long [s] after the begin of the step, with so much gained."""
+        time, y = self._origin
+        return self._equation.slopes(time + t, y + gained)
+
+    def _width(self, alpha: float) -> float:
+        """Length of the next step [s]: what the errors allow, and not much beyond the next knot.
+
+        alpha : at its begin [rad/s2]
+        """
+        control, piece = self._control, self._equation.piece
         theta, omega, _ = self._y.tolist()
-        alpha = float(equation.slopes(self._time, self._y - [piece.middle, 0.0, 0.0])[1])
         sense = math.copysign(1.0, omega or alpha)
         distance = sense * ((piece.high if sense > 0.0 else piece.low) - theta)
         square = omega * omega + 2.0 * sense * alpha * distance

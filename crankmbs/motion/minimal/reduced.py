@@ -205,6 +205,7 @@ class Pieces:
         self._fits, self._shares = base.fits(phases), np.array(shares)
         fired = base.train.combustion is not None
         self._bends = sign_changes(base.train, shares).tolist() if fired else []
+        self._known: dict[tuple[int, int, float], Piece] = {}
 
     def around(self, theta: float, sense: float) -> Piece:
         """The piece that the motion enters at an angle [rad] in a sense of rotation."""
@@ -214,9 +215,11 @@ class Pieces:
         local = ahead - turns * period
         k = min(bisect_right(fits.edges, local), len(fits.edges) - 1) - 1
         i = bisect_right(self._bends, local)
-        low = max([fits.edges[k], *self._bends[max(i - 1, 0) : i]])
-        high = min([fits.edges[k + 1], *self._bends[i : i + 1]])
-        one, base = self._piece(k, low, high, sense), turns * period
+        if (k, i, sense) not in self._known:
+            low = max([fits.edges[k], *self._bends[max(i - 1, 0) : i]])
+            high = min([fits.edges[k + 1], *self._bends[i : i + 1]])
+            self._known[k, i, sense] = self._piece(k, low, high, sense)
+        one, base = self._known[k, i, sense], turns * period
         if turns == 0:
             return one
         knots = one.low + base, one.high + base, one.middle + base
