@@ -107,7 +107,8 @@ class Cycles:
         cells = piece.cells.cut_at(self._knots, period)
         low, high = sorted((begin.theta, end.theta))
         at = samples_at(cells, self._train, np.clip(marks, low, high), in_time=False)
-        time = np.clip(at.time, begin.time, end.time)  # no cycle begins before its run, by rounding
+        time = np.clip(at.time, begin.time, end.time)
+        time[marks == begin.theta] = begin.time  # as it is known, without rounding
         kinetic = 0.5 * inertia_alone(self._train.scene, at.theta) * at.omega**2
         works, speeds = self._summed(cells, acting(self._train.loads, begin.mode.loads), at)
         for k in range(len(places) + 1):
