@@ -9,7 +9,7 @@ from beside_alone import assert_agree, by_hand
 
 from crankmbs import load_scene, simulate
 from crankmbs.batch.machine import machine_of
-from crankmbs.batch.motion import Cases, Go, run
+from crankmbs.batch.motion import Cases, Setup, run
 from crankmbs.batch.rows import rows_of
 from crankmbs.batch.serves import loads_of
 from crankmbs.batch.solve import solved_together
@@ -190,7 +190,7 @@ def over(case, end, in_time=False):
     c2 and the energy at the start."""
     machine, (*own, energy) = machine_of(PROPELLER), case
     cases = Cases(*np.array([[*own, 300.0, end, 1e-9]]).T)
-    return run(machine.answer, cases, Go(machine.sense, in_time), np.array([energy]))
+    return run(machine.answer, cases, Setup(machine.sense, in_time), np.array([energy]))
 
 
 def test_leaping_over_periods_is_passing_them():

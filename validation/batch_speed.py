@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from crankmbs import Sample, Scene, load_scene, simulate, sweep
 from crankmbs.batch.machine import Pass
-from crankmbs.batch.motion import Cases, Go, settled
+from crankmbs.batch.motion import Cases, Setup, settled
 from crankmbs.batch.rows import rows_of
 from crankmbs.batch.solve import solved_together
 from crankmbs.scene.loads import Quadratic
@@ -86,7 +86,7 @@ def _one_block(scene: Scene) -> None:
 def _motion_alone(scene: Scene) -> None:
     """The periodic motion without measures over the limit in C."""
     (group,) = solved_together([scene])
-    tables, go = group.machine.answer, Go(group.machine.sense)
+    tables, setup = group.machine.answer, Setup(group.machine.sense)
     by = np.linspace(1.0, _LEAST, _BLOCK)
     of_crank, load = _own(scene)
     inertias, squares, none = of_crank * by, -load * by[::-1], np.zeros_like(by)
@@ -98,9 +98,9 @@ def _motion_alone(scene: Scene) -> None:
     except NotServed as absent:
         print(f"  no limit in C: {absent}")
         return
-    own = _seconds(lambda: settled(tables, cases, go))
+    own = _seconds(lambda: settled(tables, cases, setup))
     least = _seconds(solve)
-    apart = np.max(np.abs(settled(tables, cases, go).begin / answer - 1.0))
+    apart = np.max(np.abs(settled(tables, cases, setup).begin / answer - 1.0))
     print(
         f"  its periodic motion {1e6 * own / len(by):.1f} us, in C {1e6 * least / len(by):.1f} us: "
         f"{least / own:.2f} of the limit's speed; energies {apart:.0e} apart"

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from crankmbs import Scene, simulate
 from crankmbs.batch.machine import Pass, machine_of
-from crankmbs.batch.motion import Cases, Go, run
+from crankmbs.batch.motion import Cases, Setup, run
 from crankmbs.batch.rows import rows_of
 from crankmbs.scene.loads import Quadratic
 from crankmbs.sweep.columns import row_of
@@ -83,9 +83,9 @@ def _over_limit(scene: Scene, periods: int, alike: bool, seconds: Seconds) -> No
     least = seconds(solve)
     ends = answer[:, 1] * (1.0 - _HAIR)
     cases = Cases(inertias, none, none, squares, speeds, ends, none)
-    go = Go(machine.sense, in_time=True)
-    own = seconds(lambda: run(tables, cases, go, starts))
-    found = run(tables, cases, go, starts)
+    setup = Setup(machine.sense, in_time=True)
+    own = seconds(lambda: run(tables, cases, setup, starts))
+    found = run(tables, cases, setup, starts)
     apart = np.max(np.abs(found.ends[:, -1] / answer[:, 0] - 1.0))
     each, what = 1e6 / (len(by) * periods), "starts" if alike else "inertia and load"
     print(

@@ -9,7 +9,7 @@ import numpy as np
 
 from crankmbs.batch.lectures import CURVES, EACH, LINEAR
 from crankmbs.batch.machine import Machine, Pass
-from crankmbs.batch.motion import Cases, Courses
+from crankmbs.batch.motion import Cases, Energies
 from crankmbs.batch.peaks import Curves, Which, sparse_nodes
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.lagrange import at_nodes
@@ -23,19 +23,19 @@ class Motions:
 
     machine: Machine
     tables: Pass
-    courses: Courses
+    energies: Energies
     cases: Cases
 
     @cached_property
     def places(self) -> tuple[Array, Array]:
         """Angles turned [rad] to where cells begin, and their widths, shape (1 or k, cells)."""
-        width, cuts = self.tables.width, self.courses.cuts
+        width, cuts = self.tables.width, self.energies.cuts
         return (np.cumsum(width, axis=1) - width, width) if cuts is None else cuts.places(width)
 
     @cached_property
     def square(self) -> Array:
         """omega^2 [rad2/s2], shape (k, cells, s)."""
-        return np.asarray(2.0 * self.courses.energy / self._total)
+        return np.asarray(2.0 * self.energies.energy / self._total)
 
     @cached_property
     def omega(self) -> Array:
@@ -88,7 +88,7 @@ class Motions:
     def curves(self) -> Curves:
         """Those of the vectors."""
         (k, r, m, s), sizes, vectors = self.sizes.shape, self.sizes, self.vectors
-        uncut = self.courses.cuts is None
+        uncut = self.energies.cuts is None
         nodes = sparse_nodes(self.tables.width.max(axis=0), s) if uncut else np.arange(m * s)
 
         def some_sizes(some: slice) -> Array:
@@ -108,7 +108,7 @@ class Motions:
         for line, (u, p) in enumerate(((self.square, mean**2), (self.omega, mean))):
             each = np.broadcast_arrays(u - p, self.alpha, np.ones(1), p)
             powers[:, :, line] = np.stack(each, axis=2)
-        cuts, of_share = self.courses.cuts, self.tables.width.shape[1]
+        cuts, of_share = self.energies.cuts, self.tables.width.shape[1]
         cells, nodes = np.divmod(lectures.sparse, s)
         cells = np.add.outer(of_share * np.arange(self.machine.shares), cells).ravel()
         nodes = np.tile(nodes, self.machine.shares)
@@ -145,7 +145,7 @@ class Motions:
 
     def cut(self, values: Array) -> Array:
         """Values in the cells, of parts of cells at the nodes of these."""
-        cuts = self.courses.cuts
+        cuts = self.energies.cuts
         return values if cuts is None else cuts.cut(values)
 
     @cached_property
@@ -155,12 +155,12 @@ class Motions:
 
     def _whole(self, table: Array) -> Array:
         """A table in the cells."""
-        return table if self.courses.cuts is None else self.courses.cuts.more(table)
+        return table if self.energies.cuts is None else self.energies.cuts.more(table)
 
     def _combined(self, table: Array) -> Array:
         """What a table, shape (machines, ..., 3, m, s), makes of omega^2, alpha and 1, shape (k,
         ..., cells, s)."""
-        m, cuts, lead = table.shape[-2], self.courses.cuts, np.ones(table.ndim - 4, np.intp)
+        m, cuts, lead = table.shape[-2], self.energies.cuts, np.ones(table.ndim - 4, np.intp)
 
         def fill(out: Array, parts: Array, at: slice) -> None:
             square, alpha = (

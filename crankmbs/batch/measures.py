@@ -10,7 +10,7 @@ import numpy as np
 
 from crankmbs.batch.curves import Motions
 from crankmbs.batch.machine import Machine
-from crankmbs.batch.motion import Cases, Courses
+from crankmbs.batch.motion import Cases, Energies
 from crankmbs.batch.peaks import Peaks, find_peaks, sizes_at
 from crankmbs.batch.pressures import highest_pressures
 from crankmbs.measures.estimate import ROUNDING
@@ -27,7 +27,7 @@ Numbers = dict[str, Array]
 """By name, of k cases, shape (k, ...)."""
 
 
-def measure(machine: Machine, cases: Cases, passes: Sequence[Courses]) -> tuple[Numbers, Numbers]:
+def measure(machine: Machine, cases: Cases, passes: Sequence[Energies]) -> tuple[Numbers, Numbers]:
     """The numbers of k motions, and by how much they may be off: what those of both passes differ
     by, their rounding, and what polynomials may miss of peaks.
 
@@ -53,7 +53,7 @@ def measure(machine: Machine, cases: Cases, passes: Sequence[Courses]) -> tuple[
     answer |= _of_peaks(one, [of.size for of in peaks], best, mean)
     check |= _of_peaks(other, there, best, check["mean_speed"])
     missed = _of_peaks(one, [of.size + of.missed for of in peaks], best, mean)
-    greatest, fast = one.courses.energy.max(axis=(1, 2)), answer["fast"]
+    greatest, fast = one.energies.energy.max(axis=(1, 2)), answer["fast"]
     rounded = {"speed_gain": fast, "fluctuation": fast / mean}
     rounded["kinetic_power"] = greatest / answer["duration"]
     rounded |= dict.fromkeys(("torque_max", "torque_min"), one.levels[0])
@@ -63,7 +63,7 @@ def measure(machine: Machine, cases: Cases, passes: Sequence[Courses]) -> tuple[
     }
     for name, value in missed.items():
         errors[name] += np.abs(value - answer[name])
-    apart = np.abs(one.courses.ends - other.courses.ends).max(axis=1)
+    apart = np.abs(one.energies.ends - other.energies.ends).max(axis=1)
     answer["closure"] = apart / greatest + ROUNDING
     angles = _angles(one, peaks[0], best)
     shown = ("duration", "fast", "slow", *(name.removesuffix("_angle") for name in angles))
@@ -83,7 +83,7 @@ def _pressures(scenes: Sequence[Scene]) -> dict[str, Array]:
 
 def _integrals(motions: Motions) -> Numbers:
     """What does not depend on peaks; means of the forces of all joints, shape (k, joints)."""
-    machine, tables, courses = motions.machine, motions.tables, motions.courses
+    machine, tables, energies = motions.machine, motions.tables, motions.energies
     width, turned = motions.places[1][..., None], float(tables.width[0].sum())
     share, joints = width * tables.rule.weights, len(joints_of(machine.scene))
     of_nodes = 1.0 / np.abs(motions.omega), motions.rods, motions.load
@@ -98,14 +98,14 @@ def _integrals(motions: Motions) -> Numbers:
     strokes = np.array([[gear.stroke for gear in one.running_gear] for one in machine.scenes])
     numbers = {
         "duration": machine.shares * time,
-        "energy": courses.begin,
-        "growth": courses.growth,
+        "energy": energies.begin,
+        "growth": energies.growth,
         "mean_speed": mean,
         "piston_speed": np.abs(mean)[:, None] * strokes / math.pi,
         "speed_gain": _gained(motions),
         "crank_torque": (share * rods).sum(axis=(1, 2)) / turned,
         "external_torque": (share * load).sum(axis=(1, 2)) / turned,
-        "kinetic_power": (courses.ends[:, -1] - courses.begin) / time,
+        "kinetic_power": (energies.ends[:, -1] - energies.begin) / time,
     }
     numbers["brake_power"] = -numbers["external_torque"] * mean
     numbers |= _powers(machine, tables.works, numbers["duration"])
@@ -145,12 +145,12 @@ def _torques_between(cases: Cases, low: Array, high: Array) -> Numbers:
 
 def _gained(motions: Motions) -> Array:
     """The speed gained over the period [rad/s]."""
-    tables, courses, mass = motions.tables, motions.courses, motions.cases.mass
+    tables, energies, mass = motions.tables, motions.energies, motions.cases.mass
     inertia = tables.at_begin + mass
-    if courses.cuts is not None:
-        rows, place = courses.cuts.of(tables.inertia).T, courses.cuts.place
+    if energies.cuts is not None:
+        rows, place = energies.cuts.of(tables.inertia).T, energies.cuts.place
         inertia = at_nodes(len(rows)).part(rows, place, place)[0] + mass
-    begin, end = (np.sqrt(2.0 * each / inertia) for each in (courses.begin, courses.ends[:, -1]))
+    begin, end = (np.sqrt(2.0 * each / inertia) for each in (energies.begin, energies.ends[:, -1]))
     return np.asarray(motions.machine.sense * (end - begin))
 
 

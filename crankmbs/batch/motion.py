@@ -22,7 +22,7 @@ from crankmbs.motion.crank_angle.periods import Period
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.collocation import Maps
 
-__all__ = ["Cases", "Courses", "Go", "run", "settled"]
+__all__ = ["Cases", "Energies", "Setup", "run", "settled"]
 
 _ROUNDS, _CLOSE = 30, 1e-9  # of Newton's method; a change of the energies whose square is nothing
 _LEAST = 0.1  # of the energy where cells begin: no guess is lower
@@ -42,16 +42,16 @@ class Cases(NamedTuple):
     rtol: Array
 
 
-class Go(NamedTuple):
-    """How runs of one machine go: sense of rotation; whether they end at a time; by what part of
-    itself every period raises the energy besides."""
+class Setup(NamedTuple):
+    """What runs of one machine share: sense of rotation; whether they end at a time; by what part
+    of itself every period raises the energy besides."""
 
     sense: float
     in_time: bool = False
     nudge: float = 0.0
 
 
-class Courses(NamedTuple):
+class Energies(NamedTuple):
     """Motions over their last periods.
 
     energy : at the nodes of cells [J], shape (k, m, s); with cuts (k, m + 1, s), of whole cells
@@ -138,13 +138,15 @@ class _Equation:
         """The same in angles, as a part of a period."""
         return np.asarray(self.width[which] / self.width[which].sum(axis=1)[:, None] + 0.0 * energy)
 
-    def leap(self, energy: Array, left: NDArray[np.longdouble], go: Go) -> tuple[Array, Array]:
+    def leap(
+        self, energy: Array, left: NDArray[np.longdouble], setup: Setup
+    ) -> tuple[Array, Array]:
         """Energies without c1 where the last two periods begin, from those on with which so much is
         left; and how many periods before. What is left is made less by these."""
         maps, size = self._plain, self.half[0].size
         growth, rise = maps.growth[:, -1], maps.rise[:, -1]
-        growth = growth + go.nudge * (1.0 + growth)
-        if not go.in_time:
+        growth = growth + setup.nudge * (1.0 + growth)
+        if not setup.in_time:
             periods = np.maximum(np.ceil(left) - 2.0, 0.0).astype(np.float64)
             left -= periods
             return _leapt(growth, rise, energy, periods), periods
@@ -178,38 +180,40 @@ def _leapt(growth: Array, rise: Array, energy: Array, periods: Array) -> Array:
     return np.asarray(energy + (more * energy + rise * times))
 
 
-def settled(tables: Pass, cases: Cases, go: Go) -> Courses:
+def settled(tables: Pass, cases: Cases, setup: Setup) -> Energies:
     """The periodic motions, by Newton's method from steady speeds."""
-    equation = _Equation(tables, cases, go.sense)
+    equation = _Equation(tables, cases, setup.sense)
     guess = equation.half * cases.speed[:, None, None] ** 2
-    energy, edges, growth = equation.solve(guess, np.arange(len(guess)), nudge=go.nudge)
-    return Courses(energy, edges[:, 0], edges[:, 1:], growth, energy.min(axis=(1, 2)))
+    energy, edges, growth = equation.solve(guess, np.arange(len(guess)), nudge=setup.nudge)
+    return Energies(energy, edges[:, 0], edges[:, 1:], growth, energy.min(axis=(1, 2)))
 
 
-def run(tables: Pass, cases: Cases, go: Go, energy: Array, cell: Index | None = None) -> Courses:
+def run(
+    tables: Pass, cases: Cases, setup: Setup, energy: Array, cell: Index | None = None
+) -> Energies:
     """Free runs from where the tables begin, with energies there [J], shape (k,), to their ends;
     cell : where these are known. Of what ends within its first period there is no least energy."""
-    equation, which = _Equation(tables, cases, go.sense), np.arange(len(energy))
+    equation, which = _Equation(tables, cases, setup.sense), np.arange(len(energy))
     k, m, _ = equation.half.shape
     at, least, periods = energy.copy(), np.full(k, np.inf), np.zeros(k)
     left = cases.end.astype(np.longdouble)  # the time of a cell is little of it
     if not equation.viscous.any():  # energies where periods begin rise or fall throughout
         least = _passed(equation.maps(energy, which), energy)[0].min(axis=(1, 2))
-        at, periods = equation.leap(energy, left, go)
+        at, periods = equation.leap(energy, left, setup)
     last = _Last(*np.array(2 * [at[:, None, None] + 0.0 * equation.half]), *np.zeros((3, k, m + 1)))
-    pace, rest = equation.spent if go.in_time else equation.turned, left.copy()
+    pace, rest = equation.spent if setup.in_time else equation.turned, left.copy()
     while len(which := which[(left[which] > 0.0) & (least[which] > 0.0)]):
         last.before[which], last.earlier[which] = last.energy[which], last.edges[which]
-        begun, rest[which] = at[which] * (1.0 + go.nudge), left[which]
+        begun, rest[which] = at[which] * (1.0 + setup.nudge), left[which]
         solved, edges, _ = equation.solve(last.energy[which], which, begun)
         last.energy[which], last.edges[which] = solved, edges
         at[which], periods[which] = edges[:, -1], periods[which] + 1.0
         least[which] = np.minimum(least[which], solved.min(axis=(1, 2)))
         last.ahead[which, 1:] = np.cumsum(pace(solved, which) @ equation.rule.weights, axis=1)
-        left[which] -= last.ahead[which, -1] if go.in_time else 1.0
-    if not (go.in_time or (cases.end % 1.0).any()):
+        left[which] -= last.ahead[which, -1] if setup.in_time else 1.0
+    if not (setup.in_time or (cases.end % 1.0).any()):
         edges = last.edges
-        return Courses(last.energy, edges[:, 0], edges[:, 1:], np.full(k, np.nan), least)
+        return Energies(last.energy, edges[:, 0], edges[:, 1:], np.full(k, np.nan), least)
     least[periods < 2.0] = np.nan
     if cell is None:
         cell = np.minimum((last.ahead[:, 1:] < rest[:, None]).sum(axis=1), m - 1)
@@ -230,7 +234,7 @@ class _Last(NamedTuple):
     ahead: Array
 
 
-def _ended(last: _Last, cuts: Cuts, least: Array) -> Courses:
+def _ended(last: _Last, cuts: Cuts, least: Array) -> Energies:
     """The last periods up to places in cells."""
     (cell, place), each = cuts, np.arange(len(least))
     begin, end = (
@@ -243,4 +247,4 @@ def _ended(last: _Last, cuts: Cuts, least: Array) -> Courses:
     energies = np.where(again[..., None], last.energy, last.before)
     energies = np.append(energies, last.before[each, cell][:, None], axis=1)
     ends = np.append(ends, end[:, None], axis=1)
-    return Courses(energies, begin, ends, np.full_like(end, np.nan), least, cuts)
+    return Energies(energies, begin, ends, np.full_like(end, np.nan), least, cuts)

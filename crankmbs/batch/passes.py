@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.batch.machine import Machine, periods_of
-from crankmbs.batch.motion import Cases, Courses, Go, run, settled
+from crankmbs.batch.motion import Cases, Energies, Setup, run, settled
 from crankmbs.batch.serves import loads_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
@@ -37,12 +37,12 @@ def _case_of(scene: Scene) -> tuple[float, ...]:
     return (scene.crank.moment_of_inertia, *loads, scene.start.speed, end, scene.run.rtol)
 
 
-def passes_of(machine: Machine, cases: Cases) -> tuple[Courses, Courses, NDArray[np.bool_]]:
+def passes_of(machine: Machine, cases: Cases) -> tuple[Energies, Energies, NDArray[np.bool_]]:
     """The motions of cases, answer and check; and of which it is sure that there is one, that the
     run comes to it, and that it keeps clear of rest."""
     one, other = machine.answer, machine.check
     energy = 0.5 * (cases.mass + one.at_begin) * cases.speed**2
-    plain, raised = (Go(machine.sense, machine.in_time, nudge) for nudge in (0.0, _NUDGE))
+    plain, raised = (Setup(machine.sense, machine.in_time, nudge) for nudge in (0.0, _NUDGE))
     if not machine.scene.settles:
         answer = run(one, cases, plain, energy)
         cell = None if answer.cuts is None else answer.cuts.cell

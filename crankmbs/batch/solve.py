@@ -1,4 +1,4 @@
-"""Scenes solved together: those that share a machine in one go, with rules as fine as the error
+"""Scenes solved together, those that share a machine at once, with rules as fine as the error
 asked for needs."""
 
 from __future__ import annotations
