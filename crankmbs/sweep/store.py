@@ -1,4 +1,4 @@
-"""The store of a sweep: a folder in Zarr's format, written block by block.
+"""The store of a sweep: a folder in Zarr's format, written by xarray block by block.
 
 The measures that have the same dimensions are one array, over what is varied and the measure; a
 block is a chunk of every array. The status of its cases is written last, and the summary of all
@@ -8,7 +8,7 @@ metadata behind the last block: a store that has it is complete.
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,13 +23,13 @@ from crankmbs.sweep.plan import Box, Plan
 
 if TYPE_CHECKING:
     import xarray as xr
-    import zarr
 
-__all__ = ["Store", "load_sweep", "opened", "read_group", "unfinished"]
+__all__ = ["Store", "load_sweep", "opened", "read_store", "unfinished"]
 
 _COMPLETE = ".zmetadata"
 _LABELS = ("units", "long_name")
 _NOT_RUN = -128
+_FORMAT: Any = {"zarr_format": 2, "consolidated": False}
 _STATUS = (
     "0 reached its end, 1 ended before it, -1 broke off, 2 a scene that cannot be built, -2 ended "
     "its worker"
@@ -49,11 +49,11 @@ class Store:
     done : how many cases are there; missing : the boxes of the blocks that are not
     """
 
-    def __init__(self, path: Path, plan: Plan, group: zarr.Group) -> None:
-        self._path, self._of = path, _measures(plan)
-        self._arrays: dict[str, Any] = dict(group.arrays())
-        self.done = int(np.count_nonzero(self._arrays["status"][:] != _NOT_RUN))
-        blocks = zip(plan.boxes, _finished(group).flat, strict=True)
+    def __init__(self, path: Path, plan: Plan) -> None:
+        self._path, self._dims, self._of = path, plan.cases.dims, _measures(plan)
+        there = read_store(path)
+        self.done = int(np.count_nonzero(there["status"] != _NOT_RUN))
+        blocks = zip(plan.boxes, _finished(there).flat, strict=True)
         self.missing = [box for box, finished in blocks if not finished]
 
     def write(self, box: Box, block: Block) -> None:
@@ -63,15 +63,24 @@ class Store:
         ------
         OutputError : the device is full, or the folder cannot be written
         """
+        import xarray as xr
+
+        sizes = [part.stop - part.start for part in box]
+
+        def at(of_cases: NDArray[Any], over: Iterable[str] = ()) -> xr.Variable:
+            return xr.Variable((*self._dims, *over), of_cases.reshape(*sizes, *of_cases.shape[1:]))
+
         values = {
-            name: np.stack([block[column] for column in columns], axis=1)
+            name: at(np.stack([block[column] for column in columns], axis=1), _over(name, columns))
             for name, columns in self._of.items()
         }
-        values |= {name: block[name] for name in ("message", "status")}
-        sizes = tuple(part.stop - part.start for part in box)
+        region = dict(zip(self._dims, box, strict=True))
         with _writing(self._path):
-            for name, of_cases in values.items():
-                self._arrays[name][box] = of_cases.reshape(*sizes, *of_cases.shape[1:])
+            for part in (
+                values | {"message": at(block["message"])},
+                {"status": at(block["status"])},
+            ):
+                xr.Dataset(part).to_zarr(self._path, region=region, **_FORMAT)
 
 
 @contextmanager
@@ -92,12 +101,11 @@ def opened(path: Path, plan: Plan) -> Iterator[Store]:
         _check_resumable(path, plan)
     try:
         with _writing(path):
-            group = zarr.open_group(str(path), mode="a", zarr_format=2)
-            if not _finished(group).any():
-                _lay_out(group, plan)
+            if new or not _finished(read_store(path)).any():
+                _lay_out(path, plan)
             for half in path.rglob("*.partial"):  # of a write that was killed
                 half.unlink()
-        yield Store(path, plan, group)
+        yield Store(path, plan)
         with _writing(path):
             zarr.consolidate_metadata(str(path), zarr_format=2)
     except BaseException:
@@ -111,23 +119,25 @@ def unfinished(path: Path) -> bool:
     return (path / ".zattrs").exists() and not (path / _COMPLETE).exists()
 
 
-def read_group(path: Path) -> zarr.Group:
-    """The group of a store, to read.
+def read_store(path: Path) -> xr.Dataset:
+    """The arrays of a store, each read from the folder when it is used.
 
     Raises
     ------
     OutputError : no sweep
     """
-    import zarr
+    import xarray as xr
 
     if not path.exists():
         raise OutputError(f"{path}: no such sweep; crankmbs sweep writes one")
     try:
-        group = zarr.open_group(str(path), mode="r", zarr_format=2)
-        group.attrs["identity"]
+        data = xr.open_dataset(
+            path, engine="zarr", consolidated=False, mask_and_scale=False, decode_times=False
+        )
+        data.attrs["identity"]
     except (OSError, LookupError, TypeError, ValueError):
         raise OutputError(f"{path}: no sweep of crankmbs; give the folder of one") from None
-    return group
+    return data
 
 
 def load_sweep(path: str | Path) -> xr.Dataset:
@@ -151,13 +161,13 @@ def load_sweep(path: str | Path) -> xr.Dataset:
     import xarray as xr
 
     folder = Path(path)
-    done = _finished(read_group(folder))
+    data = read_store(folder)
     if not (folder / _COMPLETE).exists():
+        done = _finished(data)
         raise OutputError(
             f"{folder}: {done.sum()} of {done.size} blocks are finished; crankmbs sweep --resume "
             "computes the others"
         )
-    data = xr.open_dataset(folder, engine="zarr", mask_and_scale=False, decode_times=False)
     for each in data.variables.values():
         each.attrs.pop("_FillValue", None)
     variables = {name: data[name] for name in ("message", "status")}
@@ -171,7 +181,7 @@ def load_sweep(path: str | Path) -> xr.Dataset:
 
 def _check_resumable(path: Path, plan: Plan) -> None:
     ours = plan.identity
-    theirs: Any = read_group(path).attrs["identity"]
+    theirs: Any = read_store(path).attrs["identity"]
     unlike = [words for name, words in _OTHER.items() if theirs.get(name) != (ours[name] or None)]
     if unlike:
         raise InputError(f"{path}: holds a sweep {' and '.join(unlike)}; give another folder")
@@ -179,12 +189,13 @@ def _check_resumable(path: Path, plan: Plan) -> None:
         raise InputError(f"{path}: this sweep is complete; give another folder to compute it anew")
 
 
-def _finished(group: zarr.Group) -> NDArray[np.bool_]:
+def _finished(store: xr.Dataset) -> NDArray[np.bool_]:
     """Whether each block is there, by the status of its first case."""
-    if "status" not in group:  # which is laid out last
+    if "status" not in store:  # which is laid out last
         return np.zeros(0, dtype=bool)
-    status: Any = group["status"]
-    return np.asarray(status[:][tuple(slice(None, None, n) for n in status.chunks)] != _NOT_RUN)
+    status = store["status"]
+    first = tuple(slice(None, None, length) for length in status.encoding["chunks"])
+    return np.asarray(status.values[first] != _NOT_RUN)
 
 
 def _measures(plan: Plan) -> dict[str, dict[str, Column]]:
@@ -195,38 +206,36 @@ def _measures(plan: Plan) -> dict[str, dict[str, Column]]:
     return arrays
 
 
-def _lay_out(group: zarr.Group, plan: Plan) -> None:
-    """Say what the store is of, then make all arrays, the status last; coordinates are known before
-    a case is run."""
-    about: Any = {"title": plan.scene.title, "identity": plan.identity}
-    group.attrs.put(about | {"coordinates": " ".join(plan.cases.names)})
-    cases, arrays, labels = plan.cases, _measures(plan), dict[str, Sequence[object]]()
+def _over(name: str, columns: dict[str, Column]) -> dict[str, Sequence[object]]:
+    """The dimensions of an array of measures beyond the case, with their labels."""
+    one, *_ = columns.values()
+    return {name.removesuffix("s"): list(columns), **one.dims}
 
-    def add(name: str, over: Sequence[str], about: dict[str, Any], **array: Any) -> None:
-        about = {"_ARRAY_DIMENSIONS": list(over), **about}  # by which xarray knows them
-        group.create_array(name, attributes=about, overwrite=True, **array)
 
-    def add_empty(
-        name: str, dtype: Any, nothing: object, over: Sequence[str], about: dict[str, Any]
-    ) -> None:
-        sizes = tuple(len(labels[dim]) for dim in over)
-        shape, chunks = (*cases.shape, *sizes), (*plan.chunks, *sizes)
-        over = (*cases.dims, *over)
-        add(name, over, about, shape=shape, chunks=chunks, dtype=dtype, fill_value=nothing)
+def _lay_out(path: Path, plan: Plan) -> None:
+    """Say what the store is of, and write all that is known before a case is run; the arrays hold
+    one value that stands everywhere, which takes no memory and no file."""
+    import xarray as xr
 
+    cases = plan.cases
+    data = xr.Dataset(attrs={"title": plan.scene.title, "identity": plan.identity})
     for knob in cases.knobs:
-        over = [knob.name] if cases.grid else cases.dims
-        add(knob.name, over, {"units": knob.units}, data=knob.labels, fill_value=None)
-    for name, columns in arrays.items():
-        one, *_ = columns.values()
-        labels |= {name.removesuffix("s"): list(columns), **one.dims}
+        dims = [knob.name] if cases.grid else cases.dims
+        data.coords[knob.name] = (dims, knob.labels, {"units": knob.units})
+
+    def add(name: str, over: Mapping[str, Sequence[object]], nothing: Any, about: object) -> None:
+        sizes = tuple(map(len, over.values()))
+        empty = np.broadcast_to(nothing, (*cases.shape, *sizes))
+        encoding = {"chunks": (*plan.chunks, *sizes), "_FillValue": nothing}
+        data.coords.update(over)
+        data[name] = xr.Variable((*cases.dims, *over), empty, about, encoding)
+
+    for name, columns in _measures(plan).items():
         about = {label: [getattr(each, label) for each in columns.values()] for label in _LABELS}
-        add_empty(name, "f8", np.nan, (name.removesuffix("s"), *one.dims), about)
-    for name, at in labels.items():
-        dtype = np.dtypes.StringDType() if isinstance(at[0], str) else None
-        add(name, [name], {}, data=np.array(at, dtype), fill_value=None)
-    add_empty("message", str, "", (), {})
-    add_empty("status", "i1", _NOT_RUN, (), {"long_name": _STATUS})
+        add(name, _over(name, columns), np.nan, about)
+    add("message", {}, np.array("", dtype=object), {})
+    add("status", {}, np.int8(_NOT_RUN), {"long_name": _STATUS})
+    data.to_zarr(path, mode="w", write_empty_chunks=False, **_FORMAT)
 
 
 @contextmanager

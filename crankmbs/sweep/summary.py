@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product, repeat
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.sweep.store import read_group
+from crankmbs.sweep.store import read_store
 
 __all__ = ["Bounds", "Summary", "summary"]
 
@@ -43,14 +44,16 @@ def summary(path: Path) -> Summary:
     ------
     OutputError : no sweep
     """
-    arrays: dict[str, Any] = dict(read_group(path).arrays())
-    status, measures = arrays["status"][:], arrays["measures"]
+    data = read_store(path)
+    status, measures = data["status"].values, data["measures"]
+    sizes = measures.encoding["chunks"]
     least, largest = np.full((2, measures.shape[-1]), np.nan)
-    for block in np.ndindex(measures.cdata_shape):
-        of_cases = measures.blocks[block].reshape(-1, measures.shape[-1])
+    for first in product(*map(range, repeat(0), measures.shape, sizes)):
+        block = measures[tuple(map(slice, first, np.add(first, sizes)))]
+        of_cases = block.values.reshape(-1, measures.shape[-1])
         least = np.fmin(least, np.fmin.reduce(of_cases))
         largest = np.fmax(largest, np.fmax.reduce(of_cases))
-    places = {name: k for k, name in enumerate(arrays["measure"][:].tolist())}
+    places = {name: k for k, name in enumerate(data["measure"].values.tolist())}
     words, units = (measures.attrs[label] for label in ("long_name", "units"))
     bounds = [
         Bounds(name, words[k], units[k], *map(float, (least[k], largest[k], largest[error])))
@@ -61,7 +64,7 @@ def summary(path: Path) -> Summary:
         column.tolist() for column in np.unique(status, return_index=True, return_counts=True)
     )
     ended = {
-        kind: (count, str(arrays["message"][np.unravel_index(first, status.shape)]))
+        kind: (count, data["message"][np.unravel_index(first, status.shape)].item())
         for kind, first, count in zip(*groups, strict=True)
     }
     return Summary(ended, tuple(bounds))
