@@ -14,7 +14,7 @@
   document.body.replaceChildren(root);
   const stage = new page.stage.Stage(root, given.compression, () => {});
   const attributes = (each) => each && Object.fromEntries(
-    Array.from(each.attributes, ({ name, value }) => [name, value]));
+    Array.from(each.attributes, (found) => [found.name, found.value]));
   const one = (what) => attributes(root.querySelector(what));
   const all = (what) => Array.from(root.querySelectorAll(what), (each) =>
     ({ ...attributes(each), text: each.textContent }));
@@ -44,10 +44,10 @@
     settled: shown.settled, prescribed: shown.prescribed, angles: shown.angles,
     lead: shown.leadAt(middle), ahead: shown.timeTo(middle),
     angle: shown.angleAt(shown.timeTo(middle) + 2 * shown.duration),
-    curves: Object.fromEntries([...curves, "crank ahead of the mean"].map((name) => {
+    curves: Object.fromEntries([...curves, "crank ahead of the mean"].map((curve) => {
       shown.made.clear(); // what it is drawn from is not there yet
-      const drawn = page.quantities.drawn(name, shown, k);
-      return [name, { ...drawn, now: drawn.of(shown.angles[100]) }];
+      const drawn = page.quantities.drawn(curve, shown, k);
+      return [curve, { ...drawn, now: drawn.of(shown.angles[100]) }];
     })),
     forces: bodies.map((body) => shown.samples.map((v) =>
       page.forces.forcesOn(body, shown.train, v, k))),

@@ -1,6 +1,7 @@
 /** The page: knobs, mechanism and plots of one scene, and what happens between them. */
-import { fillChoices, listenToChoices, offerSlower, showChoices } from "./controls.js";
-import { say, seenPlots, showWords, unfold, unused } from "./controls.js";
+import {
+  fillChoices, listenToChoices, offerSlower, say, seenPlots, showChoices, showWords, unfold, unused,
+} from "./controls.js";
 import { valuesOf } from "./given.js";
 import { enlarge, find, listenToKeys } from "./keys.js";
 import { Plot } from "./plot.js";

@@ -152,8 +152,8 @@ function curvesOf(quantity, cycle, k) {
 function inDiagram(name, cycle, k) {
   const { right, up, crankEnd, equal = false, cylinder = false } = DIAGRAMS[name];
   const double = crankEnd && cycle.train.crank_end.length > 0;
-  const own = double ? "head end" : CURVES[0];
-  const pairs = [{ name: own, ...along(cycle.samples, right[3], up[3], k, cycle) }];
+  const first = double ? "head end" : CURVES[0];
+  const pairs = [{ name: first, ...along(cycle.samples, right[3], up[3], k, cycle) }];
   if (double) pairs.push({ name: "crank end", ...along(cycle.samples, ...crankEnd, k, cycle) });
   if (right[4]) {
     const says = cycle.lectured(LECTURE, cylinder ? k : null);

@@ -21,8 +21,8 @@ export function drawRow(svg, cycle, theta, { width, height, type }) {
     const x = train.levers[k] * UNITS;
     const { piston_position: pin, piston_acceleration: acceleration } = v.cylinders[k];
     const [throwAt, pinAt] = [-r * Math.cos(theta + phase), -pin * UNITS];
-    const line = (y1, y2, kind, width) =>
-      add(svg, "line", { x1: x, x2: x, y1, y2, class: kind, "stroke-width": width * r });
+    const line = (y1, y2, kind, across) =>
+      add(svg, "line", { x1: x, x2: x, y1, y2, class: kind, "stroke-width": across * r });
     line(throwAt, pinAt, "bar", 0.2);
     line(0, throwAt, "throw", 0.3);
     const crown = pinAt - 0.35 * wide;

@@ -16,7 +16,7 @@ export function dataFile({ stem, units }, { samples }) {
   const columns = [["time [s]", (v) => v.time], ["crank_angle [rad]", (v) => v.crank_angle]];
   for (const name of Object.keys(crank)) columns.push([`${name} [${units[name]}]`, (v) => v[name]]);
   for (const name of Object.keys(cylinders[0])) {
-    cylinders.forEach((_, k) => {
+    cylinders.forEach((each, k) => {
       columns.push([`${name} ${k + 1} [${units[name]}]`, (v) => v.cylinders[k][name]]);
     });
   }
