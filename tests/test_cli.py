@@ -195,8 +195,7 @@ def test_an_interrupt_exits_with_130_and_leaves_no_file_of_the_run(where, monkey
     result = crankmbs_("run", "engine.toml")
     assert result.exit_code == 130
     assert result.stderr.strip() == "interrupted"
-    assert list(Path("results").rglob("*.*")) == []
-    assert Path("results").exists() == (where != "simulate")
+    assert names(".") == {"engine.toml"}
 
 
 @pytest.mark.slow

@@ -1,4 +1,5 @@
-"""A command whose output cannot be written, or that finds no memory: a status and no traceback."""
+"""A command that is interrupted, whose output cannot be written, or that finds no memory: a status
+and no traceback."""
 
 import os
 import subprocess
@@ -79,3 +80,30 @@ def test_an_error_that_is_none_of_the_output_keeps_its_own_words(tmp_path, monke
     monkeypatch.setattr(RUNNING, "simulate", missing)
     result = crankmbs_("run", "coasting")
     assert isinstance(result.exception, FileNotFoundError)
+
+
+INTERRUPTED = """
+import signal, sys
+from crankmbs.cli import main
+import crankmbs.scene.read
+
+def loaded(path):
+    try:
+        signal.raise_signal(signal.SIGINT)
+    except KeyboardInterrupt as interrupt:
+        raise {error} from {cause}
+
+crankmbs.scene.read.load_scene = loaded
+sys.argv = ["crankmbs", "check", "propeller"]
+main()
+"""
+
+
+@pytest.mark.parametrize("cause", ["interrupt", "None"])
+@pytest.mark.parametrize("error", ["ImportError('initialization failed')", "SystemError()"])
+def test_an_interrupt_is_one_whatever_a_library_makes_of_it(error, cause):
+    """As one of those in C that are just being imported."""
+    code = INTERRUPTED.format(error=error, cause=cause)
+    command = [sys.executable, "-c", code]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "interrupted\n")

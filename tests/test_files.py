@@ -166,7 +166,8 @@ main()
 @pytest.mark.parametrize("most", [30_000, 600_000], ids=["netCDF", "CSV"])
 def test_a_full_disk_is_one_sentence(most, tmp_path):
     """A limit of the files' size stands for the disk's: the write that goes beyond it fails."""
-    words = ["run", "coasting", "--no-figures", "--out", str(tmp_path)]
+    out = tmp_path / "results" / "coasting"
+    words = ["run", "coasting", "--no-figures", "--out", str(out)]
     code = FULL.format(bytes=most, words=words)
     environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
     done = subprocess.run(
@@ -174,5 +175,5 @@ def test_a_full_disk_is_one_sentence(most, tmp_path):
     )
     assert done.returncode == 2, done.stderr
     assert done.stdout == ""
-    assert done.stderr == f"error: {tmp_path}: cannot be written (File too large); {ELSE}\n"
+    assert done.stderr == f"error: {out}: cannot be written (File too large); {ELSE}\n"
     assert names(tmp_path) == set()

@@ -15,7 +15,7 @@ from typer.core import TyperGroup
 
 from crankmbs.cli.animate import animate
 from crankmbs.cli.balance import balance
-from crankmbs.cli.ending import ending
+from crankmbs.cli.ending import ending, listen
 from crankmbs.cli.export import export
 from crankmbs.cli.flywheel import flywheel
 from crankmbs.cli.lesson import lesson, lessons
@@ -103,6 +103,7 @@ for command in (
 def main() -> None:
     """Entry point of the command ``crankmbs``."""
     gc.set_threshold(_OBJECTS)
+    listen()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="replace")  # a title the terminal cannot show is no crash

@@ -3,21 +3,36 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TextIO
+from typing import Any, TextIO
 
 from typer import Exit, echo
 
 from crankmbs.errors import CrankmbsError
 
-__all__ = ["ending"]
+__all__ = ["ending", "listen"]
 
 _MEMORY = (
     "this machine has not enough memory for it; give a wider run.every, or "
     'every = "none" to keep the last cycle alone'
 )
+
+_interrupts: list[int] = []
+
+
+def listen() -> None:
+    """Keep in mind that there was an interrupt: a library that is being imported may make another
+    error of it."""
+
+    def interrupt(number: int, _: Any) -> None:
+        _interrupts.append(number)
+        raise KeyboardInterrupt
+
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # not of one in background
+        signal.signal(signal.SIGINT, interrupt)
 
 
 @contextmanager
@@ -40,6 +55,10 @@ def ending() -> Iterator[None]:
         _close(sys.stdout)
         why = f"standard output cannot be written ({error.strerror})"
         raise _exit(2, f"error: {why}; send it elsewhere") from None
+    except Exception:
+        if _interrupts:
+            raise _exit(130, "interrupted") from None
+        raise
 
 
 def _exit(status: int, message: str) -> Exit:

@@ -7,7 +7,7 @@ import re
 import shutil
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -36,11 +36,13 @@ def together(folder: Path) -> Iterator[Path]:
 
     Raises
     ------
-    OutputError : the folder cannot be made or written; nothing half-written is left
+    OutputError : the folder cannot be made or written; neither a file half-written nor a
+        new folder is left
     """
     if folder in _filled:
         yield folder
         return
+    made = [each for each in (folder, *folder.parents) if not each.exists()]
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with _alone(folder):
@@ -49,6 +51,7 @@ def together(folder: Path) -> Iterator[Path]:
             owner = os.open(part / _OWNER, os.O_CREAT | os.O_RDWR)
             _locked(owner, wait=True)
     except OSError as error:
+        _remove_empty(made)
         raise OutputError(
             f"{folder}: cannot be written ({error.strerror}); choose another folder"
         ) from None
@@ -66,6 +69,7 @@ def together(folder: Path) -> Iterator[Path]:
         _filled.remove(part)
         os.close(owner)
         shutil.rmtree(part, ignore_errors=True)
+        _remove_empty(made)
 
 
 def write_in_one_move(target: Path, write: Callable[[Path], None]) -> None:
@@ -92,6 +96,13 @@ def _move(part: Path, folder: Path) -> None:
             raise IsADirectoryError(f"{file.name} is a folder there")
     for file in files:
         file.replace(folder / file.name)
+
+
+def _remove_empty(folders: Iterable[Path]) -> None:
+    """Remove folders, each in the next one, up to one that holds something."""
+    with suppress(OSError):
+        for each in folders:
+            each.rmdir()
 
 
 def _where(error: OSError, part: Path, folder: Path) -> Path:
