@@ -30,6 +30,21 @@ def test_a_printed_number_names_its_source_by_a_key():
     assert {row["lecture"] for row in reference.rows("errata")} == {"S0", "S1", "S2"}
 
 
+NAMED = re.compile(r"(SAE|[A-Z][a-zà-ü]+),?(?: \d{6},|[^\n\d]{0,50}\d{1,2})? \(?((?:19|20)\d\d)\)")
+
+
+@pytest.mark.parametrize("folder", ["crankmbs", "validation"])
+def test_a_work_that_code_names_with_its_year_has_an_entry(folder):
+    """As "Brüls (2007)", "(Saltelli 2010)", "(SAE 900170, 1990)", "Math. 6 (1980)"."""
+    entries = bibliography.BIBLIOGRAPHY.read_text(encoding="utf-8").split("### ")
+    named = set()
+    for file in (ROOT / folder).rglob("*.py"):
+        named |= set(NAMED.findall(file.read_text(encoding="utf-8")))
+    assert named
+    lacking = [one for one in named if not any(one[0] in e and one[1] in e for e in entries)]
+    assert lacking == []
+
+
 def test_no_key_stands_twice():
     assert len(bibliography.keys()) == len(set(bibliography.keys()))
 

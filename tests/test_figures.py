@@ -3,10 +3,13 @@
 import dataclasses
 import math
 import re
+from collections import Counter
 
 import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from PIL import Image
 from two_runs import differences
 
@@ -266,6 +269,24 @@ def test_figures_are_saved_as_png_and_no_global_state_is_touched(tmp_path, one):
         with Image.open(file) as image:
             assert image.format == "PNG"
             assert min(image.size) >= 700
+
+
+def test_a_figure_is_laid_out_and_drawn_once(one, tmp_path, monkeypatch):
+    counted = []
+
+    def count(owner, name):
+        whole = getattr(owner, name)
+
+        def counting(self, *values, **options):
+            counted.append(name)
+            return whole(self, *values, **options)
+
+        monkeypatch.setattr(owner, name, counting)
+
+    count(ConstrainedLayoutEngine, "execute")
+    count(Figure, "draw")
+    files = save_figures(one.result, tmp_path)
+    assert Counter(counted) == {"draw": len(files), "execute": len(files)}
 
 
 def test_figures_that_cannot_be_saved_are_an_output_error(tmp_path, one):
