@@ -18,13 +18,10 @@ pytestmark = pytest.mark.slow
 
 SEEDS = range(2000, 2200)
 HELD = {2037, 2041, 2065, 2097, 2113, 2156, 2184}  # these cranks slow down until they stop
-LONG = {2037, 2113, 2146, 2156}  # which Python follows for seconds, most of them until they stop
 MEASURED = sorted({*SEEDS[1::10]} - HELD)
 
 
-@pytest.mark.parametrize(
-    "seed", [pytest.param(one, marks=pytest.mark.long if one in LONG else ()) for one in SEEDS]
-)
+@pytest.mark.parametrize("seed", SEEDS)
 def test_motion_and_every_reaction_are_those_of_python(page, seed):
     scene = random_page(seed)
     assert refusals(scene) == ()

@@ -18,14 +18,6 @@ from validation.random_scenes import random_scene
 pytestmark = pytest.mark.slow
 
 EXACT = stored()
-# whose two runs take longer than the others of the same kind, up to half a minute
-LONG = {
-    1, 4, 25, 26, 31, 36, 37, 49, 54, 60, 67, 74, 75, 77, 79, 82, 87, 88, 89, 91, 93, 94, 96,
-    99, 102, 103, 106, 107, 108, 111, 115, 116, 119, 121, 124, 125, 126, 127, 128, 129, 131,
-    137, 138, 139, 140, 141, 144, 147, 148, 151, 152, 154, 159, 161, 164, 166, 169, 171, 173,
-    176, 178, 180, 186, 188, 190, 192, 197, 199, 201, 202, 203, 204, 206, 212, 213, 219, 224,
-    240, 245, 250, 253, 261, 262, 263, 265, 274, 280, 281, 283, 286, 298, 320, 323, 341, 347,
-}  # fmt: skip
 
 
 def test_the_scenes_are_all_here_and_of_every_kind():
@@ -42,9 +34,7 @@ def test_the_scenes_are_all_here_and_of_every_kind():
 
 
 @pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
-@pytest.mark.parametrize(
-    "seed", [pytest.param(one, marks=pytest.mark.long if one in LONG else ()) for one in EXACT]
-)
+@pytest.mark.parametrize("seed", EXACT)
 def test_errors_are_honest(seed, formulation):
     status, samples, exact = EXACT[seed]
     scene = random_scene(seed)
