@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from drawn_scenes import scenes
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -16,25 +17,24 @@ from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.scene.run import Extent
 from validation.random_scenes import random_scene
 
-SEEDS = st.integers(0, 10_000)
+SENSES = st.sampled_from([1.0, -1.0])
 few = settings(max_examples=12, deadline=None, derandomize=True, database=None)
 RATE = 150.0  # rad/s: fast enough for these machines to turn through
 
 
-def turning(seed, turns=1.0, rtol=1e-10, **changes):
-    """A random machine that turns through, with smooth loads, sampled at a few angles."""
-    scene = random_scene(seed)
+@st.composite
+def machines(draw, rtol=1e-10, **changes):
+    """Random machines that turn through, with smooth loads, sampled at a few angles."""
+    scene = draw(scenes())
     inertia, _, torque = reduce(crank_train(scene), np.linspace(0.0, 4 * np.pi, 500))
-    speed = math.copysign(
-        max(RATE, 8.0 * math.sqrt(np.abs(torque).max() / inertia.min())), 0.5 - seed % 2
-    )
+    speed = draw(SENSES) * max(RATE, 8.0 * math.sqrt(np.abs(torque).max() / inertia.min()))
     brake = 0.02 * inertia.min()
     loads = (
         Constant(torque=0.01 * inertia.min() * speed**2),
         Viscous(coefficient=brake * abs(speed)),
         Quadratic(coefficient=brake),
     )
-    run = Run(until=Extent(value=turns * 2 * np.pi, unit="rad"), every="31 deg", rtol=rtol)
+    run = Run(until=Extent(value=2 * np.pi, unit="rad"), every="31 deg", rtol=rtol)
     start = Start(angle=0.3, speed=speed)
     return replace(scene, start=start, torque=loads, run=run, **changes)
 
@@ -48,19 +48,17 @@ def motion_of(data):
 
 
 @few
-@given(SEEDS, st.sampled_from(["crank_angle", "minimal"]))
-def test_energy_closes(seed, formulation):
-    scene = turning(seed, rtol=1e-8)
+@given(machines(rtol=1e-8), st.sampled_from(["crank_angle", "minimal"]))
+def test_energy_closes(scene, formulation):
     data = simulate(scene, formulation=formulation).data
     assert peak(data["energy_residual"]) < 1e-8 * peak(data["kinetic_energy"])
 
 
 @pytest.mark.slow
 @few
-@given(SEEDS, st.sampled_from(["crank_angle", "minimal"]))
-def test_inverse_after_forward_is_the_identity(seed, formulation):
+@given(machines(), st.sampled_from(["crank_angle", "minimal"]))
+def test_inverse_after_forward_is_the_identity(scene, formulation):
     """The torque from outside that the motion needs is the one that the loads gave."""
-    scene = turning(seed)
     data = simulate(scene, formulation=formulation).data
     theta, omega, alpha = motion_of(data)
     constant, viscous, quadratic = scene.torque
@@ -74,11 +72,11 @@ def test_inverse_after_forward_is_the_identity(seed, formulation):
 
 
 @few
-@given(SEEDS)
-def test_forward_after_inverse_is_the_identity(seed):
+@given(machines(), SENSES)
+def test_forward_after_inverse_is_the_identity(scene, sense):
     """The acceleration that the drive torque gives is the prescribed one, sample by sample."""
-    speed = Oscillation(mean=RATE * (-1) ** seed, amplitude=40.0, order=2.0)
-    scene = replace(turning(seed), start=None, torque=(), motion=Motion(speed=speed, angle=1.0))
+    speed = Oscillation(mean=sense * RATE, amplitude=40.0, order=2.0)
+    scene = replace(scene, start=None, torque=(), motion=Motion(speed=speed, angle=1.0))
     data = simulate(scene).data
     theta, omega, alpha = motion_of(data)
     inertia, slope, torque = reduce(crank_train(scene), theta)
@@ -88,10 +86,9 @@ def test_forward_after_inverse_is_the_identity(seed):
 
 
 @few
-@given(SEEDS)
-def test_power_flows(seed):
+@given(machines())
+def test_power_flows(scene):
     """The rate of the kinetic energy is the power of gas, weight and outside at every instant."""
-    scene = turning(seed)
     pressure = pressures_of(scene)
     theta, omega, alpha = np.linspace(0.0, 6.0, 9), np.linspace(-200.0, 200.0, 9), 3e3
     found = reactions(CrankTrain(scene, pressure), theta, omega, alpha + 0.0 * theta)
@@ -106,10 +103,9 @@ def test_power_flows(seed):
 
 
 @few
-@given(SEEDS)
-def test_joint_forces_do_no_net_work(seed):
+@given(machines(gravity=None))
+def test_joint_forces_do_no_net_work(scene):
     """What the crank gives to the rods, the pistons take, less what rods and weights keep."""
-    scene = replace(turning(seed), gravity=None)
     rod = replace(scene.rod, mass=0.0, inertia=0.0)
     scene = replace(scene, rod=rod)
     theta, omega = np.linspace(0.0, 6.0, 9), np.linspace(-200.0, 200.0, 9)
@@ -120,10 +116,9 @@ def test_joint_forces_do_no_net_work(seed):
 
 
 @few
-@given(SEEDS)
-def test_mirror(seed):
+@given(machines(gravity=None, gas=None, layout=Layout(firing_order=(1,))))
+def test_mirror(scene):
     """Without offset and gravity a machine run backwards from -theta is the mirrored one."""
-    scene = turning(seed, gravity=None, gas=None, layout=Layout(firing_order=(1,)))
     scene = replace(scene, piston=replace(scene.piston, offset=0.0))
     start = Start(angle=-scene.start.angle, speed=-scene.start.speed)
     push = Constant(torque=-scene.torque[0].torque)
@@ -136,10 +131,9 @@ def test_mirror(seed):
 
 
 @few
-@given(SEEDS, st.floats(0.1, 10.0))
-def test_scaling_of_mass(seed, factor):
+@given(machines(gas=None), st.floats(0.1, 10.0))
+def test_scaling_of_mass(scene, factor):
     """All masses, pressures and loads times a factor: the same motion, forces times the factor."""
-    scene = turning(seed, gas=None)
     crank, rod, piston = scene.crank, scene.rod, scene.piston
     spin = rod.inertia if rod.inertia == "two-mass" else factor * rod.inertia
     constant, viscous, quadratic = scene.torque
@@ -157,14 +151,14 @@ def test_scaling_of_mass(seed, factor):
     one, other = simulate(scene).data, simulate(heavier).data
     np.testing.assert_allclose(one["time"], other["time"], rtol=1e-9)
     for name in ("main_bearing_force_x", "crank_pin_force_y", "kinetic_energy"):
-        assert peak(factor * one[name].values - other[name].values) < 2e-9 * peak(other[name])
+        assert peak(factor * one[name].values - other[name].values) <= 2e-9 * peak(other[name])
 
 
 @few
-@given(SEEDS, st.floats(0.1, 10.0))
-def test_scaling_of_length(seed, factor):
+@given(machines(gravity=None, gas=None), st.floats(0.1, 10.0))
+def test_scaling_of_length(scene, factor):
     """All lengths times f, inertias times f^2, no weight: forces f, torques f^2 times as large."""
-    scene, motion = turning(seed, gravity=None, gas=None), (np.linspace(0, 6, 9), 100.0, 2e3)
+    motion = np.linspace(0, 6, 9), 100.0, 2e3
     crank, rod, piston = scene.crank, scene.rod, scene.piston
     spin = rod.inertia if rod.inertia == "two-mass" else factor**2 * rod.inertia
     larger = replace(
@@ -187,7 +181,7 @@ def test_scaling_of_length(seed, factor):
         reactions(CrankTrain(s, None), *np.broadcast_arrays(*motion)) for s in (scene, larger)
     )
     for name, power in (("crank_pin_force_x", 1), ("side_force", 1), ("external_torque", 2)):
-        assert peak(factor**power * one[name] - other[name]) < 1e-9 * peak(other[name]), name
+        assert peak(factor**power * one[name] - other[name]) <= 1e-9 * peak(other[name]), name
 
 
 @pytest.mark.parametrize("ratio", [1e-3, 1e-5])
@@ -208,10 +202,9 @@ def test_a_long_rod_gives_the_harmonic_slider(ratio):
 
 @pytest.mark.slow
 @few
-@given(SEEDS, st.sampled_from(["crank_angle", "minimal"]))
-def test_time_reversal(seed, formulation):
+@given(machines(), st.sampled_from(["crank_angle", "minimal"]))
+def test_time_reversal(scene, formulation):
     """Without losses a machine stopped and sent back runs back to where it came from."""
-    scene = turning(seed)
     scene = replace(scene, torque=scene.torque[:1])
     there = simulate(scene, formulation=formulation).data.isel(time=-1)
     back = Start(angle=there["crank_angle"].item(), speed=-there["crank_speed"].item())
