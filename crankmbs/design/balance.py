@@ -90,12 +90,13 @@ class Balance:
             at = float(np.degrees(np.angle(moment)))
             turn = (at + 90.0) % 180.0 - 90.0  # to the nearer end of the reference line
             more, less = ("from", "to") if turn > 0.0 else ("to", "from")
+            where = "[start]" if scene.motion is None else "[motion]"
             verb, back = ("take", "add") if turn > 0.0 else ("add", "take")
             raise InputError(
                 f"the counterweights together, {abs(moment):.6g} kg m at {at:.6g} degrees, do not "
                 "lie along the crank's reference line, where center_of_mass is; to turn that line "
                 f"{verb} {abs(turn):.6g} degrees {more} every phase of [layout], and {back} as "
-                f"much {less} the angle of the start; the centre of mass that the crank has turns "
+                f"much {less} the angle of {where}; the centre of mass that the crank has turns "
                 "with it"
             )
         radius = scene.crank.radius
