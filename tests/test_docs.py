@@ -1,5 +1,6 @@
 """The manual, whose build runs its blocks: its tables are complete, what it names is there."""
 
+import os
 import re
 import sys
 import tomllib
@@ -13,6 +14,7 @@ from typer.main import get_command
 import crankmbs
 from crankmbs.cli import app
 from crankmbs.compare import WORDS
+from crankmbs.lessons import LESSONS
 from crankmbs.mechanics.variables import EVERY
 from crankmbs.scene.examples import example_of
 from crankmbs.scene.schema import dimension_of
@@ -132,6 +134,20 @@ def test_what_is_made_of_a_page_stands_in_it(page):
     """Build the manual to write it anew."""
     assert "<!-- made -->" in PAGES[page]
     assert made.with_part(PAGES[page], made.PARTS[page]()) == PAGES[page]
+
+
+def test_what_the_build_adds_to_a_page_is_made():
+    added = []
+    for page, text in PAGES.items():
+        built = made.as_built(page.removesuffix(".md"), text)
+        assert "<!-- in " not in built
+        added += [
+            os.path.normpath(Path(page).parent / target)
+            for target in re.findall(r'(?:href|src)="([^"]+)"', built)
+            if ":" not in target
+        ]
+    lessons = [f"lessons/{name}.html" for name in LESSONS for _ in ("linked", "framed")]
+    assert sorted(added) == sorted([*lessons, "lessons/index.html", "demo.html", "demo.html"])
 
 
 def test_a_figure_that_is_made_stands_in_the_folder():

@@ -1,4 +1,4 @@
-"""README is one screen: its two lines run in CI, what it points at is there."""
+"""README is one screen: its two lines run in CI, what it names is there."""
 
 import re
 from pathlib import Path
@@ -31,11 +31,6 @@ def test_its_lines_are_the_two():
     assert len(LINES) == 2
     (name,) = re.findall(r"crankmbs run (\w+)", README)
     assert name in shipped_scenes()
-
-
-@pytest.mark.parametrize("target", re.findall(r"\]\((?!https?:)([^)]+)\)", README + CHANGES))
-def test_what_it_points_at_is_there(target):
-    assert (ROOT / target).is_file()
 
 
 @pytest.mark.parametrize("option", sorted(set(OPTION.findall(README + CHANGES))))

@@ -76,7 +76,7 @@ def hard_page() -> str:
         here = _row(kinetostatic if prescribed else crank_angle)
         bodies = _row(multibody)
         error = f"; true {bodies.true}, stated {bodies.stated}" if bodies.true else ""
-        linked = f"[{case}](CLAIMS.md#hard_{name})"
+        linked = f"[{case}](../../validation/CLAIMS.md#hard_{name})"
         lines.append(f"| {linked} | {why} | {bodies.outcome}{error} | {' | '.join(here)} |")
     return "\n".join([*lines, ""])
 
