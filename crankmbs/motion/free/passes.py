@@ -37,7 +37,8 @@ _BETTERED = 0.5  # of the least error: what is not below has not been bettered b
 _EVALUATIONS = 50_000  # over time, for which a second of the cost cap stands: as measured
 _PLACES = np.array([0.225, 0.725])  # of new edges in a cell: an old edge is then at 0.55 of a new
 # cell, where no Gauss rule of few nodes takes a jump to be
-_BESIDE = np.array([5e-3, 5e-5])  # of a cell: edges near a knot, where all grids have one
+_BESIDE = np.array([1.5e-2, 1e-3, 7e-5])  # of a cell: edges near a knot, where all grids have one,
+# each so near the next that what hides before the first node of their cell is twice as far off
 # what a pass may say that has not seen yet, or by its errors never, that the crank is at rest
 _RESTING = {Ending.REST, Ending.SWING, Ending.COMPLETE}
 _SAME_REST = 1e-3  # rad: two passes rest at the same place; how far apart is in the stated error

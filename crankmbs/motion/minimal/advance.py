@@ -35,6 +35,7 @@ _MOST_STEPS = 4096  # of one segment
 _FINEST, _RADAU = 2.3e-14, 1e-13  # tolerances of a step relative to a value, SciPy's; of Radau
 _BEYOND = 1.02  # of the way to a knot: a step that goes there, so that it is passed
 _FIRST = 1e-3  # of the step that could be: the first one behind a knot, where it hesitates
+_LAST = 0.9  # of the way to a knot: a step there, where it hesitates
 _LOST = 1e-14  # of the time: no shorter step leads to where a function of Python has a value
 _LEAVES = 1e-12  # of a step: a motion that leaves a limit before has not set out
 
@@ -43,9 +44,10 @@ class Effort(NamedTuple):
     """Relative tolerance of each step, the evaluations that are allowed, the steps of a first pass,
     which are halved here, and how many the first segment may have.
 
-    hesitates : whether the first step behind a knot is far shorter than it could be. A jump of a
-        function of Python right behind a dead centre, where its force has no torque, lies else
-        between the first two places at which a step knows the torque, and is passed over unseen
+    hesitates : whether steps before and behind a knot are far shorter than they could be. A jump of
+        a function of Python right beside a dead centre, where its force has no torque, lies else
+        between the first or the last two places at which a step knows the torque, and is passed
+        over unseen
     """
 
     tolerance: float
@@ -159,6 +161,7 @@ class _Walk:
         self._equation, self._control = equation, control
         self._time, self._y = begin.time, np.array([begin.theta, begin.omega, 0.0])
         self._h, self._most, self._evaluations = h, most, 0
+        self._free = h  # the next step, were there no knot near
         self._at_knot = begin.theta in (equation.piece.low, equation.piece.high)
         self._steps: list[tuple[float, float, Array]] = []
         branch = equation.branch
@@ -194,6 +197,7 @@ class _Walk:
         if step is None:
             return False
         self._h, begin, self._at_knot = step.h, self._time, False
+        self._free = max(self._free, step.h) if step.width == width else step.h
         if step.x > _LEAVES:
             self._steps.append((begin, step.width, step.row))
             self._time = begin + step.x * step.width
@@ -267,8 +271,12 @@ class _Walk:
         reach = math.inf
         if square > 0.0:
             reach = _BEYOND * 2.0 * distance / (abs(omega) + math.sqrt(square))
-        first = _FIRST if control.hesitates and self._at_knot else 1.0
-        width = min(first * self._h, reach, control.bound - self._time)
+        h = self._h
+        if control.hesitates and self._at_knot:
+            h = _FIRST * self._free
+        elif control.hesitates and _FIRST * self._free < reach < 10 * h:
+            reach *= _LAST
+        width = min(h, reach, control.bound - self._time)
         return control.before.halved(self._time, width) if control.before else width
 
     def _landed(self, step: _Step) -> bool:
