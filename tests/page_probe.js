@@ -49,8 +49,12 @@
       const drawn = page.quantities.drawn(curve, shown, k);
       return [curve, { ...drawn, now: drawn.of(shown.angles[100]) }];
     })),
-    forces: bodies.map((body) => shown.samples.map((v) =>
-      page.forces.forcesOn(body, shown.train, v, k))),
+    forces: bodies.map((body) => {
+      const { forcesOn, forceAt } = page.forces;
+      const forces = forcesOn(body, shown.train, k);
+      return shown.samples.map((v) =>
+        forces.map((each) => ({ name: each.name, at: each.at(v), force: forceAt(each, v) })));
+    }),
     poses: bodies.map((body) => poses.map((n) => posed(body, n))),
     numbers: page.words.numbersOf(shown), badge: page.words.badgeOf(shown, given.endings),
     marks: page.words.deadCentreMarks(shown, k, dead),

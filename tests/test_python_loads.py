@@ -180,9 +180,10 @@ def test_multibody_confirms():
 
 
 @pytest.mark.parametrize("formulation", FREE)
-@pytest.mark.parametrize("behind", [0.001, 0.004, 0.016])
+@pytest.mark.parametrize("behind", [0.001, 0.004, 0.016, -0.0016])
 def test_a_jump_right_behind_a_dead_centre_is_not_passed_over(behind, formulation):
-    """There the force has no torque, so that what is before the jump gives nothing away."""
+    """There the force has no torque, so that what is before the jump gives nothing away; nor does
+    what is behind one right before it."""
 
     def jumps(t, angle, displacement, velocity):
         return 200.0 if (angle - behind) % (2.0 * math.pi) > math.pi else -100.0

@@ -53,7 +53,8 @@ export class AffineCells {
       rate[first + j] = (2 * branch.c2) / inertia[first + j];
     });
     const found = this.linear.solve(width, push, rate, first);
-    let [growth, rise] = [0, 0];
+    let growth = 0;
+    let rise = 0;
     for (let j = 0; j < s; j++) {
       const at = first + j;
       gain[at] = found[2 * j];
@@ -67,11 +68,14 @@ export class AffineCells {
 
   /** Pass a cell from an energy [J] on: torque and slowness at its nodes are written from number
    * `to` on. The time that it takes [s], NaN where the energy is gone; `slope` is how that changes
-   * with the energy, `least` and `most` that at all nodes so far. */
+   * with the energy, `least` and `most` that at all nodes so far, `isSlow` whether at a node of the
+   * cell it would be gone within half a degree. */
   pass(number, energy, torque, slowness, to) {
     if (Number.isNaN(this.growth[number])) this.solve(number);
-    const { inertia, push, rate, gain, shift, grid: { rule: { weights } } } = this;
-    let [spent, slope, least, most] = [0, 0, this.least, this.most];
+    const { inertia, push, rate, gain, shift, branch: { c0 }, grid: { rule: { weights } } } = this;
+    let spent = 0;
+    let slope = 0;
+    this.isSlow = false;
     for (let j = 0, k = number * weights.length; j < weights.length; j++, k++) {
       const kinetic = gain[k] * energy + shift[k];
       const part = 0.5 / kinetic;
@@ -80,25 +84,14 @@ export class AffineCells {
       slowness[to + j] = slow;
       spent += weights[j] * slow;
       slope -= weights[j] * slow * gain[k] * part;
-      if (kinetic < least) least = kinetic;
-      if (kinetic > most) most = kinetic;
+      const load = Math.abs(c0 + rate[k] * kinetic);
+      if (!(kinetic > SLOW * (Math.abs(push[k] - c0) + load))) this.isSlow = true;
+      if (kinetic < this.least) this.least = kinetic;
+      if (kinetic > this.most) this.most = kinetic;
     }
     const width = Math.abs(this.width(number));
     this.slope = width * slope;
-    this.least = least;
-    this.most = most;
     return width * spent;
-  }
-
-  /** Whether at a node of a cell the energy would be gone within half a degree. */
-  isSlow(number, energy) {
-    const { push, rate, gain, shift, branch: { c0 }, grid: { rule: { nodes } } } = this;
-    for (let j = 0, k = number * nodes.length; j < nodes.length; j++, k++) {
-      const kinetic = gain[k] * energy + shift[k];
-      const load = Math.abs(c0 + rate[k] * kinetic);
-      if (!(kinetic > SLOW * (Math.abs(push[k] - c0) + load))) return true;
-    }
-    return false;
   }
 }
 

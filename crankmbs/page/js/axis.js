@@ -1,5 +1,6 @@
 /** Axes of a plot: maps of values to pixels, with grid, ticks and names. */
 import { readable, roundTicks, steps } from "./format.js";
+import { rangeOf } from "./shapes.js";
 import { Pen, set } from "./svg.js";
 
 const QUARTERS = [45, 90, 180, 360, 720]; // degrees between ticks of the crank angle
@@ -7,10 +8,10 @@ const QUARTERS = [45, 90, 180, 360, 720]; // degrees between ticks of the crank 
 /** How curves { x, y } are put into a box: { box, right, up, x, y }, maps of values to pixels and
  * the ranges shown. holds : values { x, y } that the ranges hold besides, or none */
 export function frameOf(box, curves, { shape, overAngle, holds = {} }) {
-  let y = rangeOf(curves.flatMap((curve) => curve.y), holds.y);
+  let y = roundRange(curves.map((curve) => curve.y), holds.y);
   let x = overAngle
     ? ends(shape.curves[0].x)
-    : rangeOf(curves.flatMap((curve) => curve.x), holds.x);
+    : roundRange(curves.map((curve) => curve.x), holds.x);
   if (shape.equal) [x, y] = squared(box, x, y);
   const [from, to] = shape.equal ? [box.right, box.left] : [box.left, box.right];
   const right = (value) => from + ((value - x.low) / (x.high - x.low)) * (to - from);
@@ -19,10 +20,17 @@ export function frameOf(box, curves, { shape, overAngle, holds = {} }) {
   return { box, right, up, x, y };
 }
 
+/** The value to the right at which a pointer is, within a frame in an svg. */
+export function valueUnder({ clientX }, svg, { box, x }) {
+  const { left } = svg.getBoundingClientRect();
+  const part = (clientX - left - box.left) / (box.right - box.left);
+  return x.low + Math.min(Math.max(part, 0), 1) * (x.high - x.low);
+}
+
 /** Draw the axes of a frame into a group.
  *
- * about : { type in pixels, shape, marks at dead centres, overAngle, last whether the values to the
- * right stand below, name, left where it stands }
+ * about : { type in pixels, shape, overAngle, last whether the values to the right stand below,
+ * name, left where it stands }
  */
 export function drawAxes(group, { box, right, up, x, y }, about) {
   const pen = new Pen(group);
@@ -34,6 +42,15 @@ export function drawAxes(group, { box, right, up, x, y }, about) {
   pen.add("text", at, about.name);
   pen.end();
   for (const [style, path] of paths) set(path, { d: lines[style] });
+}
+
+/** Draw marks { degrees, name } at dead centres into the axes of a frame. */
+export function drawMarks(group, { box, right }, marks) {
+  for (const style of ["dead top", "dead bottom"]) {
+    const own = marks.filter(({ name }) => style === `dead ${name}`);
+    const d = own.map(({ degrees }) => upright(box, right(degrees))).join("");
+    set(group.querySelector(`[class="${style}"]`), { d });
+  }
 }
 
 function ordinate({ pen, lines }, box, up, { y, type }) {
@@ -52,8 +69,8 @@ function ordinate({ pen, lines }, box, up, { y, type }) {
   }
 }
 
-/** The crank angle with the dead centres, or another quantity with its name. */
-function abscissa({ pen, lines }, box, right, { x, type, shape, marks, overAngle, last }) {
+/** The crank angle, or another quantity with its name. */
+function abscissa({ pen, lines }, box, right, { x, type, shape, overAngle, last }) {
   const letters = (box.right - box.left) / type;
   const { ticks, step } = overAngle
     ? quarters(x, letters / 3.6)
@@ -63,9 +80,6 @@ function abscissa({ pen, lines }, box, right, { x, type, shape, marks, overAngle
     const place = { x: right(tick), y: box.bottom + 1.25 * type, class: "tick" };
     const text = readable(tick, digitsOf(step));
     if (last) pen.add("text", place, overAngle ? `${text}°` : text);
-  }
-  for (const { degrees, name } of overAngle ? marks : []) {
-    lines[`dead ${name}`] += upright(box, right(degrees));
   }
   if (overAngle || !last) return;
   const middle = { x: 0.5 * (box.left + box.right), y: box.bottom + 2.3 * type };
@@ -98,11 +112,9 @@ function ends(x) {
 
 /** A range around values, which does not change with every little change of them; it begins at a 0
  * that it is to hold. */
-function rangeOf(all, holds = []) {
-  const values = [...all, ...holds].filter((value) => !Number.isNaN(value)); // gaps
-  let low = Math.min(...values);
-  let high = Math.max(...values);
-  if (!values.length) [low, high] = [-1, 1];
+function roundRange(lists, holds = []) {
+  let [low, high] = rangeOf([...lists, holds]);
+  if (low > high) [low, high] = [-1, 1];
   const most = Math.max(Math.abs(low), Math.abs(high));
   const size = most > 1e-12 ? most : 1; // at rest, an axis about 0 that can be read
   if (!(high - low > 1e-9 * size)) [low, high] = [low - 0.01 * size, high + 0.01 * size];

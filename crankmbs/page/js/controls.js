@@ -74,11 +74,6 @@ function options(select, count) {
   select.replaceChildren(...names.map((name) => new Option(`cylinder ${name}`, name)));
 }
 
-/** The knobs that change nothing at present. */
-export function unused(cycle, given) {
-  return cycle.prescribed && given.scene.motion === null ? ["flywheel", "load"] : [];
-}
-
 /** Say a sentence in the place of the badge, or none. stale : whether the picture is another one
  * than the knobs say */
 export function say(sentence, stale = false) {

@@ -127,14 +127,9 @@ function periodicCubics(x, y, interpolation) {
 }
 
 function straight(x, y, interpolation) {
-  const cubics = [[], [], [], []];
-  for (let k = 0; k + 1 < x.length; k++) {
-    cubics[0].push(0);
-    cubics[1].push(0);
-    cubics[2].push(interpolation === "step" ? 0 : (y[k + 1] - y[k]) / (x[k + 1] - x[k]));
-    cubics[3].push(y[k]);
-  }
-  return cubics;
+  const [, rise] = stepsOf(x, y);
+  const none = rise.map(() => 0);
+  return [none, none, interpolation === "step" ? none : rise, y.slice(0, -1)];
 }
 
 /** Widths of the intervals between rows, and the slopes of straight lines across them. */

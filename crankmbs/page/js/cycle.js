@@ -1,16 +1,15 @@
 /** One cycle of a scene as the page shows it: the settled one, or one that says how it drifts. */
 import { countUpTo } from "./arrays.js";
-import { filled } from "./format.js";
-import { LECTURES, cylinderLectured, lecturedAt } from "./lecture.js";
+import { RPM, filled } from "./format.js";
+import { LECTURES, lecturedAt } from "./lecture.js";
 import { lastSpan, measuresOf } from "./measures.js";
 import { cylinderReactionsAt, reactionsAt } from "./reactions.js";
 import { Refused } from "./refused.js";
-import { spread } from "./shapes.js";
+import { spread, valueAlong } from "./shapes.js";
 
 const POINTS = 360; // intervals of a curve
 const QUICK = { stages: 5, tolerance: null };
 const FINE = { stages: 7, tolerance: 1e-11 };
-const RPM = Math.PI / 30;
 
 /** The cycle of a scene.
  *
@@ -34,7 +33,7 @@ export function cycleOf(engine, scene, endings, { fine = false, warm = null } = 
   const measures = fine ? measuresOf(motion, engine.rules[9], span) : null;
   const angles = spread(span.from, span.to, POINTS);
   const moving = scene.motion === null
-    ? engine.samples(motion.train, angles, 1, scene.grid_period)
+    ? engine.samples(motion.train, angles, scene.grid_period)
     : null;
   const rows = angles.map((theta, n) => motion.at(theta, moving?.at(n)));
   return new Cycle(scene, motion, { ...span, angles, rows, why, measures });
@@ -100,14 +99,8 @@ class Cycle {
     const key = `${name}, ${k}`;
     if (!this.answers.has(key)) {
       const { train, mean } = this;
-      const lecture = LECTURES[name];
-      const say = (sample) => {
-        if (k === null) return lecturedAt(train, lecture, sample);
-        const cylinders = [];
-        cylinders[k] = cylinderLectured(train, lecture, sample, k);
-        return { cylinders };
-      };
-      const at = ({ theta, shares }) => say({ theta, shares, omega: mean, alpha: 0 });
+      const at = ({ theta, shares }) =>
+        lecturedAt(train, LECTURES[name], { theta, shares, omega: mean, alpha: 0 }, k);
       this.answers.set(key, this.rows.map(at));
     }
     return this.answers.get(key);
@@ -145,9 +138,7 @@ class Cycle {
 
   /** By how much the crank is ahead of a ring that turns evenly [rad], at an angle. */
   leadAt(theta) {
-    const place = ((theta - this.from) / (this.to - this.from)) * POINTS;
-    const k = Math.min(Math.max(Math.floor(place), 0), POINTS - 1);
-    return this.leads[k] + (this.leads[k + 1] - this.leads[k]) * (place - k);
+    return valueAlong(this.leads, (theta - this.from) / (this.to - this.from));
   }
 }
 

@@ -1,11 +1,10 @@
 /** A figure of a lesson: the mechanism, curves, sliders, and words that follow them. */
+import { DEGREE } from "./format.js";
 import { Player } from "./player.js";
 import { Plot } from "./plot.js";
 import { Shown } from "./shown.js";
 import { Pen, add, watched, write } from "./svg.js";
 import { spanOf, tellingPose } from "./view.js";
-
-const DEGREE = Math.PI / 180;
 
 /** One figure.
  *

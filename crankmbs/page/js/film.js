@@ -1,5 +1,5 @@
 /** The film: a run that Python computed, replayed over time. */
-import { readable } from "./format.js";
+import { RPM, readable } from "./format.js";
 import { valuesOf } from "./given.js";
 import { enlarge, find, listenToKeys } from "./keys.js";
 import { Player } from "./player.js";
@@ -8,7 +8,6 @@ import { write } from "./svg.js";
 import { TimePlot } from "./time_plot.js";
 import { Track } from "./track.js";
 
-const RPM = Math.PI / 30;
 const SECONDS = 28; // that the film takes at first
 const POWERS = [0.001, 0.01, 0.1, 1, 10, 100, 1000, 1e4];
 const RATES = POWERS.flatMap((power) => [1, 2, 5].map((each) => each * power));

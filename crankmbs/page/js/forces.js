@@ -4,67 +4,80 @@ import { turnedBy } from "./geometry.js";
 /** The bodies that one can look at. */
 export const BODIES = ["piston", "rod", "crank"];
 
-/** The forces on a body at a sample, in the engine's frame: { name, kind, at: [x, y], force }. With
- * onCrown one is drawn on the piston's crown, with onSkirt below its skirt, with onSide on its side
- * towards Y (1) or away.
+/** The forces on a body, of variables v each { name, kind, at(v): [x, y] in the engine's frame, and
+ * x(v), y(v) [N] in one that leans by `bank` }. With onCrown it is drawn on the piston's crown,
+ * with onSkirt below its skirt, with onSide(v) on its side towards Y (1) or away.
  *
- * v : variables; k : number of the cylinder
+ * k : number of the cylinder
  */
-export function forcesOn(body, train, v, k) {
-  if (body === "piston") return onPiston(train, v, k);
-  if (body === "rod") return onRod(train, v, k);
-  return onCrank(train, v);
+export function forcesOn(body, train, k) {
+  if (body === "piston") return onPiston(train, k);
+  return body === "rod" ? onRod(train, k) : onCrank(train);
 }
 
-function onPiston(train, v, k) {
-  const { bank } = train.cylinders[k];
-  const at = v.cylinders[k];
-  const pin = turnedBy(bank, at.piston_position, train.gears[k].shape.offset);
-  const place = (x, y) => turnedBy(bank, x, y);
+/** One of them in the engine's frame [N]. */
+export function forceAt({ bank, x, y }, v) {
+  return turnedBy(bank, x(v), y(v));
+}
+
+function onPiston(train, k) {
+  const [pin, of] = [pistonPin(train, k), variables(k)];
   const found = [
-    arrow("wall on piston", "wall", pin, place(0, at.side_force)),
-    arrow("rod on piston", "pin", pin, place(at.piston_pin_force_x, at.piston_pin_force_y)),
+    arrow("wall on piston", "wall", pin, [none, of("side_force")]),
+    arrow("rod on piston", "pin", pin, [of("piston_pin_force_x"), of("piston_pin_force_y")]),
   ];
-  const add = (...about) => found.push(arrow(...about));
+  const add = (name, kind, resists, where) =>
+    found.push(arrow(name, kind, pin, [of(resists, -1), none], where));
   if (train.friction !== null) {
-    const onSide = at.side_force > 0 ? -1 : 1;
-    add("friction on piston", "bearing", pin, place(-at.friction_force, 0), { onSide });
+    const onSide = (v) => (v.cylinders[k].side_force > 0 ? -1 : 1);
+    add("friction on piston", "bearing", "friction_force", { onSide });
   }
-  const [onCrown, onSkirt] = [true, true];
-  if (train.pressure.length) add("gas on piston", "gas", pin, place(-at.gas_force, 0), { onCrown });
-  if (train.applies) {
-    add("applied force", "outside", pin, place(-at.applied_force, 0), { onSkirt });
-  }
+  if (train.pressure.length) add("gas on piston", "gas", "gas_force", { onCrown: true });
+  if (train.applies) add("applied force", "outside", "applied_force", { onSkirt: true });
   return found;
 }
 
-function onRod(train, v, k) {
-  const { bank, phase } = train.cylinders[k];
-  const at = v.cylinders[k];
-  const { radius: r, offset } = train.gears[k].shape;
-  const pin = turnedBy(bank, at.piston_position, offset);
-  const throwAt = v.crank_angle + phase + bank;
-  const crank = [r * Math.cos(throwAt), r * Math.sin(throwAt)];
-  const [px, py] = [at.piston_pin_force_x, at.piston_pin_force_y];
+function onRod(train, k) {
+  const [pin, crank, of] = [pistonPin(train, k), crankPin(train, k), variables(k)];
+  const pushed = [of("piston_pin_force_x", -1), of("piston_pin_force_y", -1)];
   return [
-    arrow("piston on rod", "pin", pin, turnedBy(bank, -px, -py)),
-    arrow("crank on rod", "bearing", crank,
-      turnedBy(bank, at.crank_pin_force_x, at.crank_pin_force_y)),
+    arrow("piston on rod", "pin", pin, pushed),
+    arrow("crank on rod", "bearing", crank, [of("crank_pin_force_x"), of("crank_pin_force_y")]),
   ];
 }
 
-function onCrank(train, v) {
-  const rods = train.cylinders.map(({ bank, phase }, k) => {
-    const r = train.gears[k].shape.radius;
-    const angle = v.crank_angle + phase + bank;
-    const { crank_pin_force_x: x, crank_pin_force_y: y } = v.cylinders[k];
-    const name = train.cylinders.length > 1 ? `rod ${k + 1} on crank` : "rod on crank";
-    return arrow(name, "pin", [r * Math.cos(angle), r * Math.sin(angle)], turnedBy(bank, -x, -y));
+function onCrank(train) {
+  const rods = train.cylinders.map((_, k, { length: count }) => {
+    const of = variables(k);
+    const name = count > 1 ? `rod ${k + 1} on crank` : "rod on crank";
+    const pushed = [of("crank_pin_force_x", -1), of("crank_pin_force_y", -1)];
+    return arrow(name, "pin", crankPin(train, k), pushed);
   });
-  const bearing = [v.main_bearing_force_x, v.main_bearing_force_y];
-  return [...rods, arrow("bearing on crank", "bearing", [0, 0], bearing)];
+  const held = [(v) => v.main_bearing_force_x, (v) => v.main_bearing_force_y];
+  return [...rods, arrow("bearing on crank", "bearing", { bank: 0, at: () => [0, 0] }, held)];
 }
 
-function arrow(name, kind, at, force, where) {
-  return { name, kind, at, force, ...where };
+function arrow(name, kind, place, [x, y], where) {
+  return { name, kind, ...place, x, y, ...where };
+}
+
+/** What reads a variable of a cylinder by its name, times a sign. */
+function variables(k) {
+  return (name, sign = 1) => (v) => sign * v.cylinders[k][name];
+}
+
+function none() {
+  return 0;
+}
+
+function pistonPin({ cylinders, gears }, k) {
+  const { bank } = cylinders[k];
+  const { offset } = gears[k].shape;
+  return { bank, at: (v) => turnedBy(bank, v.cylinders[k].piston_position, offset) };
+}
+
+function crankPin({ cylinders, gears }, k) {
+  const { phase, bank } = cylinders[k];
+  const { radius } = gears[k].shape;
+  return { bank, at: (v) => turnedBy(v.crank_angle + phase + bank, radius, 0) };
 }

@@ -1,4 +1,9 @@
-/** Numbers and sentences as Python writes them, and as a reader likes them. */
+/** Numbers and sentences as Python writes them, and as a reader likes them, and his units. */
+
+export const RPM = Math.PI / 30; // rad/s
+export const DEGREE = Math.PI / 180; // rad
+export const MM = 1e-3; // m
+export const KN = 1e3; // N
 
 /** A number like Python's %g with so many digits. */
 export function general(x, digits = 6) {

@@ -51,26 +51,29 @@ export const LECTURES = {
   "S1 (motion and forces truncated)": truncated,
 };
 
-/** What is shown of a lecture's formulas: of every cylinder, and of the main bearing.
+/** What is shown of a lecture's formulas: of every cylinder, and of the main bearing; or of
+ * cylinder k alone, from 0.
  *
  * sample : { theta, omega, alpha, shares }, with the mean speed and alpha 0 what a lecture would
  * reckon with
  */
-export function lecturedAt(train, lecture, sample) {
+export function lecturedAt(train, lecture, sample, k = null) {
+  const cylinders = train.cylinders.map((_, n) =>
+    (k === null || n === k ? cylinderLectured(train, lecture, sample, n) : null));
+  if (k !== null) return { cylinders };
   const { theta, omega, alpha } = sample;
   const { crank } = train;
   let [x, y] = inertiaAtThrow(crank.mass, crank.center_of_mass, theta, omega, alpha);
-  const cylinders = train.cylinders.map(({ bank }, k) => {
-    const found = cylinderLectured(train, lecture, sample, k);
+  cylinders.forEach((found, n) => {
+    const { bank } = train.cylinders[n];
     const pull = turnedBy(bank, found["crank pin force x"], found["crank pin force y"]);
     [x, y] = [x + pull[0], y + pull[1]];
-    return found;
   });
   return { "main bearing force x": x, "main bearing force y": y, cylinders };
 }
 
 /** Those of one cylinder, from number 0. */
-export function cylinderLectured(train, lecture, sample, number) {
+function cylinderLectured(train, lecture, sample, number) {
   const { gears, cylinders } = train;
   const { rod, piston, shape } = gears[number];
   const { theta, omega, alpha, shares } = sample;

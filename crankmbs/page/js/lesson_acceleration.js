@@ -1,10 +1,9 @@
 /** Velocity and acceleration: the least acceleration leaves bottom dead centre. */
 import { rootIn } from "./arrays.js";
-import { readable } from "./format.js";
+import { DEGREE, readable } from "./format.js";
 import { begun } from "./lesson.js";
 import { diagram, overAngle, ratioOf, spread } from "./shapes.js";
 
-const DEGREE = Math.PI / 180;
 const LIMIT = (Math.sqrt(21) - 3) / 6; // of the rod ratio: above it the minimum leaves
 
 export function start() {

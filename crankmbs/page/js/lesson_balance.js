@@ -1,11 +1,11 @@
 /** Several cylinders: which orders of force, couple and torque are left. */
-import { readable } from "./format.js";
+import { KN, readable } from "./format.js";
 import { begun } from "./lesson.js";
-import { drawRow } from "./row.js";
 import { diagram, overAngle } from "./shapes.js";
+import { add, set } from "./svg.js";
 
-const KN = 1e3;
 const HIGHEST = 6; // order shown
+const UNITS = 1000; // of the drawing per metre
 
 export function start() {
   return begun({ shake: SHAKE, couple: COUPLE, torque: TORQUE, twin: TWIN });
@@ -137,23 +137,15 @@ function shaken(scene) {
   };
 }
 
-/** The amplitudes of the orders of values at a cycle's samples, { order, size, cos, sin }. */
-function ordersOf({ from, to, angles }, values) {
+/** The amplitude of an order of values at a cycle's samples, { order, size, cos, sin }. */
+function orderOf({ angles }, values, order) {
   const count = values.length - 1;
-  const turns = Math.abs(to - from) / (2 * Math.PI);
-  return Array.from({ length: Math.round(HIGHEST * turns) }, (_, n) => {
-    const order = (n + 1) / turns;
-    let [cos, sin] = [0, 0];
-    for (let k = 0; k < count; k++) {
-      cos += (2 / count) * values[k] * Math.cos(order * angles[k]);
-      sin += (2 / count) * values[k] * Math.sin(order * angles[k]);
-    }
-    return { order, size: Math.hypot(cos, sin), cos, sin };
-  });
-}
-
-function orderOf(cycle, values, wanted) {
-  return ordersOf(cycle, values).find(({ order }) => Math.abs(order - wanted) < 1e-6);
+  let [cos, sin] = [0, 0];
+  for (let k = 0; k < count; k++) {
+    cos += (2 / count) * values[k] * Math.cos(order * angles[k]);
+    sin += (2 / count) * values[k] * Math.sin(order * angles[k]);
+  }
+  return { order, size: Math.hypot(cos, sin), cos, sin };
 }
 
 /** One order of values, at the samples. */
@@ -165,7 +157,9 @@ function partOf(cycle, values, wanted) {
 
 /** Orders as sticks on a line. */
 function sticks(cycle, values, unit, most) {
-  const orders = ordersOf(cycle, values);
+  const turns = Math.abs(cycle.to - cycle.from) / (2 * Math.PI);
+  const orders = Array.from({ length: Math.round(HIGHEST * turns) }, (_, n) =>
+    orderOf(cycle, values, (n + 1) / turns));
   return diagram({
     title: "orders",
     right: { text: "order", unit: "per turn" },
@@ -178,4 +172,46 @@ function sticks(cycle, values, unit, most) {
     of: () => [0, 0],
     holds: { y: [0, most] },
   });
+}
+
+/** The crank seen from the side, at a crank angle: pistons in a row, and the force of each on the
+ * frame, in an svg of a size [px] with letters of a type. */
+function drawRow(svg, cycle, theta, { width, height, type }) {
+  svg.replaceChildren();
+  const { train } = cycle;
+  const r = train.shape.radius * UNITS;
+  const wide = train.piston.area ? Math.sqrt((4 * train.piston.area) / Math.PI) * UNITS : 1.6 * r;
+  const far = Math.abs(train.levers[0]) * UNITS + wide;
+  const top = r + train.shape.length * UNITS + 0.4 * wide + 1.6 * r;
+  set(svg, { viewBox: `${-far} ${-top} ${2 * far} ${top + 2 * r}` });
+  const letters = type / Math.min(width / (2 * far), height / (top + 2 * r));
+  add(svg, "line", { x1: -far, x2: far, y1: 0, y2: 0, class: "shaft", "stroke-width": 0.16 * r });
+  const v = cycle.at(theta);
+  const longest = (1.3 * r) / (train.piston.mass * train.shape.radius * v.crank_speed ** 2);
+  train.cylinders.forEach(({ phase }, k) => {
+    const x = train.levers[k] * UNITS;
+    const { piston_position: pin, piston_acceleration: acceleration } = v.cylinders[k];
+    const [throwAt, pinAt] = [-r * Math.cos(theta + phase), -pin * UNITS];
+    const line = (y1, y2, kind, across) =>
+      add(svg, "line", { x1: x, x2: x, y1, y2, class: kind, "stroke-width": across * r });
+    line(throwAt, pinAt, "bar", 0.2);
+    line(0, throwAt, "throw", 0.3);
+    const crown = pinAt - 0.35 * wide;
+    const box = { x: x - 0.42 * wide, y: crown, width: 0.84 * wide, height: 0.6 * wide };
+    add(svg, "rect", { ...box, class: "body", "stroke-width": 0.05 * r });
+    // inertia pulls where it slows upwards
+    const force = longest * train.piston.mass * acceleration;
+    const [from, to] = force > 0 ? [crown, crown - force] : [crown + force, crown];
+    add(svg, "path", { d: arrow(x, from, to, r), class: "push", "stroke-width": 0.09 * r });
+  });
+  add(svg, "text", { x: 0, y: 1.7 * r, "font-size": letters },
+    `couple ${readable(v.rocking_moment_y, 0)} N m`);
+}
+
+/** An upright arrow. */
+function arrow(x, from, to, r) {
+  const long = Math.abs(to - from);
+  if (long < 0.02 * r) return "";
+  const back = Math.sign(from - to) * Math.min(0.35 * r, long);
+  return `M${x} ${from}V${to + back}M${x - 0.16 * r} ${to + back}h${0.32 * r}L${x} ${to}Z`;
 }

@@ -1,10 +1,9 @@
 /** Displacement: the piston is past half its stroke when the crank is at 90 degrees. */
-import { readable } from "./format.js";
+import { MM, readable } from "./format.js";
 import { bottomPosition, topPosition } from "./geometry.js";
 import { begun } from "./lesson.js";
 import { overAngle, ratioOf } from "./shapes.js";
 
-const MM = 1e-3;
 const QUARTER = Math.PI / 2;
 
 export function start() {

@@ -2,12 +2,11 @@
 import { remembering } from "./arrays.js";
 import { cycleOf } from "./cycle.js";
 import { Engine } from "./engine.js";
-import { readable } from "./format.js";
+import { RPM, readable } from "./format.js";
 import { LECTURES, lecturedAt } from "./lecture.js";
 import { begun } from "./lesson.js";
-import { diagram, overAngle, spread } from "./shapes.js";
+import { diagram, overAngle, sizeOf, spread } from "./shapes.js";
 
-const RPM = Math.PI / 30;
 const COUNT = 24; // flywheels of the curve
 const EXACT = LECTURES["untruncated lecture"];
 const QUANTITIES = {
@@ -86,7 +85,6 @@ const COST = {
   },
   says: (cycle, { quantity }) => {
     const [{ curves: [{ y }], differences: [{ y: off }] }] = COST.shapes(cycle, { quantity });
-    const largest = (values) => Math.max(...values.map(Math.abs));
-    return { share: `${readable((100 * largest(off)) / largest(y), 2)} %` };
+    return { share: `${readable((100 * sizeOf([off])) / sizeOf([y]), 2)} %` };
   },
 };

@@ -1,10 +1,9 @@
 /** Forces and side thrust: gas against inertia, and what a rod of two masses misses. */
-import { readable } from "./format.js";
+import { KN, readable } from "./format.js";
 import { begun } from "./lesson.js";
 import { drawn } from "./quantities.js";
-import { overAngle } from "./shapes.js";
+import { overAngle, sizeOf } from "./shapes.js";
 
-const KN = 1e3;
 const TWO_MASSES = "untruncated lecture";
 
 export function start() {
@@ -63,9 +62,9 @@ const WORTH = {
   shapes: (cycle, { quantity }) => [drawn(quantity, cycle, 0)],
   says: (cycle, { quantity }) => {
     const { curves, differences } = drawn(quantity, cycle, 0);
-    const peak = Math.max(...curves[0].y.map(Math.abs));
+    const peak = sizeOf([curves[0].y]);
     const [masses, series] = differences.map(({ y }) =>
-      `${readable((100 * Math.max(...y.map(Math.abs))) / peak, 2)} %`);
+      `${readable((100 * sizeOf([y])) / peak, 2)} %`);
     return { masses, series };
   },
 };

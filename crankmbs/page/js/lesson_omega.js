@@ -1,9 +1,7 @@
 /** Why the speed is not constant: from the turning moment over the energy to the speed. */
-import { readable } from "./format.js";
+import { RPM, readable } from "./format.js";
 import { begun } from "./lesson.js";
 import { overAngle } from "./shapes.js";
-
-const RPM = Math.PI / 30;
 
 export function start() {
   return begun({ moment: MOMENT, energy: ENERGY, speed: SPEED });

@@ -1,10 +1,9 @@
 /** Reading a bearing polar: every point is a force, its direction and its size. */
-import { readable } from "./format.js";
+import { KN, readable } from "./format.js";
 import { begun } from "./lesson.js";
 import { drawn } from "./quantities.js";
 import { diagram, overAngle } from "./shapes.js";
 
-const KN = 1e3;
 const TEN = Math.PI / 18;
 const DIRECTIONS = 180; // at which the load of the pin's surface is looked at
 const WIDE = Math.PI / 3; // rad to either side: how far a load presses on the surface

@@ -1,12 +1,11 @@
 /** How far to trust a number: step size, order, error, and an error one can state. */
 import { remembering } from "./arrays.js";
-import { METHODS, stepped } from "./explicit.js";
-import { readable } from "./format.js";
+import { DEGREE, RPM, readable } from "./format.js";
 import { begun } from "./lesson.js";
-import { diagram, overAngle } from "./shapes.js";
+import { branchAt, firstPhases, torqueOf } from "./loads.js";
+import { diagram, overAngle, valueAlong } from "./shapes.js";
+import { givenAt, reduceAt } from "./tables.js";
 
-const RPM = Math.PI / 30;
-const DEGREE = Math.PI / 180;
 const COUNTS = [36, 48, 72, 108, 144, 216, 288, 432, 576, 864, 1152, 1728, 2304];
 const STYLES = { Euler: "exact", Heun: "second", "Runge-Kutta": "third" };
 
@@ -37,7 +36,9 @@ function digitsOf(error) {
 const STEP = {
   shapes: (cycle, { size, method }) => {
     const found = stepped(cycle, method, countOf(cycle, size));
-    const y = cycle.angles.map((theta) => between(found, theta, cycle) / RPM);
+    const speeds = found.map(({ omega }) => omega / RPM);
+    const part = (theta) => (theta - cycle.from) / (cycle.to - cycle.from);
+    const y = cycle.angles.map((theta) => valueAlong(speeds, part(theta))); // a broken line
     const curves = [
       { name: "exact", of: (v) => v.crank_speed / RPM },
       { name: "in steps", style: "exact", y },
@@ -51,14 +52,6 @@ const STEP = {
     return { count: String(count), off: `${readable(off, off < 1 ? 4 : 1)} rpm` };
   },
 };
-
-/** The broken line through the steps. */
-function between(found, theta, { from, to }) {
-  const count = found.length - 1;
-  const place = ((theta - from) / (to - from)) * count;
-  const k = Math.min(Math.floor(place), count - 1);
-  return found[k].omega + (found[k + 1].omega - found[k].omega) * (place - k);
-}
 
 /** The work-precision diagram: digits over steps, each method a line as steep as its order. */
 const ORDER = {
@@ -122,4 +115,56 @@ function digitsOver(title, lines, count, error) {
     of: () => [Math.log10(count), digitsOf(error)],
     holds: { y: [0] },
   });
+}
+
+/** By name: the order, and a step of dE/dtheta = Q(theta, E) by h. */
+const METHODS = {
+  Euler: { order: 1, step: (q, theta, e, h) => e + h * q(theta, e) },
+  Heun: {
+    order: 2,
+    step: (q, theta, e, h) => {
+      const first = q(theta, e);
+      return e + 0.5 * h * (first + q(theta + h, e + h * first));
+    },
+  },
+  "Runge-Kutta": {
+    order: 4,
+    step: (q, theta, e, h) => {
+      const a = q(theta, e);
+      const b = q(theta + 0.5 * h, e + 0.5 * h * a);
+      const c = q(theta + 0.5 * h, e + 0.5 * h * b);
+      const d = q(theta + h, e + h * c);
+      return e + (h / 6) * (a + 2 * b + 2 * c + d);
+    },
+  },
+};
+
+/** The speeds [rad/s] of a settled cycle from its start by a method in so many steps, { theta,
+ * omega } after each. */
+function stepped(cycle, name, count) {
+  const { train, sense, from, to } = cycle;
+  const torque = torqueOn(cycle);
+  const h = (to - from) / count;
+  const speed = (theta, e) =>
+    sense * Math.sqrt(Math.max(2 * e, 0) / reduceAt(train, theta).inertia);
+  let energy = cycle.samples[0].kinetic_energy;
+  const found = [{ theta: from, omega: speed(from, energy) }];
+  for (let k = 0; k < count; k++) {
+    energy = METHODS[name].step(torque, from + k * h, energy, h);
+    const theta = from + (k + 1) * h;
+    found.push({ theta, omega: speed(theta, energy) });
+  }
+  return found;
+}
+
+/** The torque of gas, weights, friction and loads [N m] at a crank angle and a kinetic energy; of a
+ * load that jumps at this very speed that above the jump. */
+function torqueOn({ train, sense, samples: [first], rows: [{ shares }] }) {
+  const phases = firstPhases(train.loads, first.crank_speed);
+  return (theta, energy) => {
+    const of = reduceAt(train, theta);
+    const omega = sense * Math.sqrt(Math.max(2 * energy, 0) / of.inertia);
+    const branch = branchAt(train.loads, phases, 0, omega, Infinity);
+    return givenAt(train, of, { shares, phases, sense }, omega) + torqueOf(branch, 0, omega);
+  };
 }

@@ -75,7 +75,8 @@ export class Travel {
   toEdge(turn, k) {
     const { edges } = this.grid;
     const base = turn * edges[edges.length - 1];
-    const [low, high] = [base + edges[k], base + edges[k + 1]];
+    const low = base + edges[k];
+    const high = base + edges[k + 1];
     const edge = this.sense > 0 ? high : low;
     const last = this.sense * (this.stop.theta - edge) <= SLIVER;
     const target = last ? this.stop.theta : edge;
@@ -111,7 +112,7 @@ export class Travel {
     if (time + spent >= branch.tEnd) return false;
     const growth = cells.growth[k];
     const gained = growth * energy + cells.rise[k];
-    if (!(energy + gained > 0) || cells.isSlow(k, energy)) this.ending = "slow";
+    if (!(energy + gained > 0) || cells.isSlow) this.ending = "slow";
     else this.accept(target, k, { gained, spent, growth });
     return true;
   }

@@ -1,7 +1,8 @@
 /** The page: knobs, mechanism and plots of one scene, and what happens between them. */
 import {
-  fillChoices, listenToChoices, offerSlower, say, seenPlots, showChoices, showWords, unfold, unused,
+  fillChoices, listenToChoices, offerSlower, say, seenPlots, showChoices, showWords, unfold,
 } from "./controls.js";
+import { DEGREE } from "./format.js";
 import { valuesOf } from "./given.js";
 import { enlarge, find, listenToKeys } from "./keys.js";
 import { Plot } from "./plot.js";
@@ -13,7 +14,6 @@ import { dataFile, save } from "./taken.js";
 import { Turner } from "./turned.js";
 import { firstView, keysOf, tellingPose } from "./view.js";
 
-const DEGREE = Math.PI / 180;
 const PLOTS = ["upper", "lower"];
 
 /** Begin with what Python wrote into the page. */
@@ -40,10 +40,13 @@ class Page extends Shown {
       this.turn(name, name in this.view ? undefined : value);
       this.release();
     });
-    this.press("reset", () => this.reset());
-    this.press("csv", () => save(...dataFile(this.given, this.cycle)));
-    this.press("large", enlarge);
-    this.press("more", () => { unfold(); this.redraw(); });
+    const pressed = {
+      reset: () => this.reset(),
+      csv: () => save(...dataFile(this.given, this.cycle)),
+      large: enlarge,
+      more: () => { unfold(); this.redraw(); },
+    };
+    for (const [id, does] of Object.entries(pressed)) find(id).addEventListener("click", does);
     listenToKeys({
       play: () => this.toggle(),
       step: (sign, far) => {
@@ -52,10 +55,6 @@ class Page extends Shown {
       },
     });
     addEventListener("hashchange", () => this.open(location.hash));
-  }
-
-  press(id, does) {
-    find(id).addEventListener("click", does);
   }
 
   plot(root) {
@@ -127,7 +126,8 @@ class Page extends Shown {
       this.plots[PLOTS.indexOf(name)].draw(drawn(view[name], cycle, k), marks);
     }
     showChoices(given, cycle, { ...given.own, ...view, ...this.values, cylinder: String(k + 1) });
-    this.knobs.disable(unused(cycle, given));
+    const unused = cycle.prescribed && given.scene.motion === null ? ["flywheel", "load"] : [];
+    this.knobs.disable(unused);
     const { player } = this;
     player.slower ??= offerSlower(cycle, (slower) => (player.slower = slower));
     showWords(given, cycle, this.error);

@@ -3,8 +3,9 @@
  * It is drawn in pixels of the page, so that its type has the size of the page's; the cursor can
  * be dragged, and what lies under the pointer is read out.
  */
-import { drawAxes, frameOf } from "./axis.js";
+import { drawAxes, drawMarks, frameOf, valueUnder } from "./axis.js";
 import { decimalsFor, padded, readable } from "./format.js";
+import { rangeOf, sizeOf, valueAlong } from "./shapes.js";
 import { slid } from "./slide.js";
 import { Pen, add, build, lineOf, listed, set, watched, write } from "./svg.js";
 
@@ -35,9 +36,9 @@ export class Plot {
       press: () => this.overAngle(),
       move: (event) => {
         this.hover = null;
-        this.onMove(this.degreesAt(event));
+        this.onMove(valueUnder(event, this.svg, this.upper));
       },
-      hover: (event) => this.overAngle() && this.point(this.degreesAt(event)),
+      hover: (event) => this.overAngle() && this.point(valueUnder(event, this.svg, this.upper)),
       release: () => this.onMove(null),
     });
     this.svg.addEventListener("pointerleave", () => this.point(null));
@@ -49,7 +50,7 @@ export class Plot {
   draw(shape, marks) {
     this.shape = shape;
     this.seen = visible(shape);
-    this.most = sizeOf({ y: [...shape.curves[0].y, ...(shape.holds?.y ?? [])] });
+    this.most = sizeOf([shape.curves[0].y, shape.holds?.y ?? []]);
     this.marks = marks;
     this.root.classList.toggle("diagram", isDiagram(shape));
     this.root.classList.toggle("square", Boolean(shape.equal));
@@ -85,7 +86,7 @@ export class Plot {
     const box = { left: 4.4 * type, right: width - 1.7 * type, top: 1.3 * type };
     const top = { ...box, bottom: strip ? split - 1.5 * type : foot };
     const curves = this.ghost ? [...shape.curves, this.ghost.curve] : shape.curves;
-    const about = { type, shape, marks: this.marks, overAngle, left: box.left };
+    const about = { type, shape, overAngle, left: box.left };
     this.upper = frameOf(top, curves, { ...about, holds: shape.holds });
     this.draws("upper", this.upper, { ...about, last: !strip, name: nameOf(shape) });
     const below = { ...box, top: split, bottom: foot };
@@ -103,16 +104,12 @@ export class Plot {
   /** Draw axes anew where they differ from those that stand there. */
   draws(name, frame, about) {
     const group = this.axes[name];
-    if (frame === null) {
-      group.replaceChildren();
-      this.axes[`${name} as`] = "";
-      return;
-    }
-    const { box, x, y } = frame;
-    const { type, marks, last, name: title, overAngle, shape: { right } } = about;
-    const as = JSON.stringify([box, x, y, type, marks, last, title, overAngle, right]);
-    if (this.axes[`${name} as`] !== as) drawAxes(group, frame, about);
-    this.axes[`${name} as`] = as;
+    if (frame === null) group.replaceChildren();
+    const { type, last, name: title, overAngle, shape: { right } } = about;
+    const as = frame && JSON.stringify([frame, type, last, title, overAngle, right]);
+    if (frame && group.drawn !== as) drawAxes(group, frame, about);
+    if (frame) drawMarks(group, frame, overAngle ? this.marks : []);
+    group.drawn = as;
   }
 
   /** Put the cursor at a crank angle [deg]. */
@@ -177,13 +174,6 @@ export class Plot {
     return seen.length ? [...styled, ...seen] : [...styled, ["no difference but rounding", "", ""]];
   }
 
-  degreesAt(event) {
-    const { left } = this.svg.getBoundingClientRect();
-    const { box, x } = this.upper;
-    const part = (event.clientX - left - box.left) / (box.right - box.left);
-    return x.low + Math.min(Math.max(part, 0), 1) * (x.high - x.low);
-  }
-
   /** Whether a curve over the crank angle is drawn. */
   overAngle() {
     return Boolean(this.upper) && !isDiagram(this.shape);
@@ -198,23 +188,17 @@ export class Plot {
     const { shape } = this;
     const ys = shape.curves[0].y;
     const decimals = decimalsFor(this.most);
-    const [low, high] = [Math.min(...ys), Math.max(...ys)].map((y) => readable(y, decimals));
+    const [low, high] = rangeOf([ys]).map((y) => readable(y, decimals));
     return `${shape.title}: ${low} to ${high} ${shape.up.unit}, over the ${shape.right.text}`;
   }
 }
 
 /** The differences that are more than rounding, each with its style and size. */
 function visible({ curves, differences }) {
-  const size = Math.max(...curves.map(sizeOf));
+  const size = sizeOf(curves.map(({ y }) => y));
   const sized = differences.map((each, n) =>
-    ({ ...each, style: `difference${n}`, size: sizeOf(each) }));
+    ({ ...each, style: `difference${n}`, size: sizeOf([each.y]) }));
   return sized.filter((each) => each.size > NOTHING * size);
-}
-
-function sizeOf({ y }) {
-  let size = 0;
-  for (const value of y) size = Math.max(size, Math.abs(value));
-  return size;
 }
 
 function entry(legend) {
@@ -238,8 +222,5 @@ function nameOf({ up, right }) {
 
 /** The value of a curve at an angle, between its points. */
 function between({ x, y }, degrees) {
-  const n = x.length - 1;
-  const place = ((degrees - x[0]) / (x[n] - x[0])) * n;
-  const k = Math.min(Math.max(Math.floor(place), 0), n - 1);
-  return y[k] + (y[k + 1] - y[k]) * (place - k);
+  return valueAlong(y, (degrees - x[0]) / (x[x.length - 1] - x[0]));
 }

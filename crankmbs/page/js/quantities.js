@@ -1,9 +1,8 @@
 /** What the plots can show: quantities over the crank angle, and diagrams of two of them. */
+import { DEGREE, RPM } from "./format.js";
 import { topPosition } from "./geometry.js";
-import { diagram, overAngle } from "./shapes.js";
+import { diagram, overAngle, sizeOf } from "./shapes.js";
 
-const RPM = Math.PI / 30;
-const DEGREE = Math.PI / 180;
 const EXACT = "untruncated lecture";
 const LECTURE = "S1 (motion and forces truncated)";
 
@@ -115,8 +114,7 @@ export function drawn(name, cycle, k) {
 function curvesOver(name, cycle, k) {
   const quantity = QUANTITIES[name];
   const values = curvesOf(quantity, cycle, k);
-  const size = Math.max(...values.flatMap(({ y }) => [Math.max(...y), -Math.min(...y)]));
-  const { unit, si } = scaled(quantity.unit, quantity.si, size);
+  const { unit, si } = scaled(quantity.unit, quantity.si, sizeOf(values.map(({ y }) => y)));
   const curves = values.map(({ name: what, y }) => ({ name: what, y: y.map((v) => v / si) }));
   const pairs = quantity.even ? [] : curves.slice(1); // else the curve again
   return overAngle(cycle, {
@@ -159,8 +157,7 @@ function inDiagram(name, cycle, k) {
     const says = cycle.lectured(LECTURE, cylinder ? k : null);
     pairs.push({ name: CURVES[2], ...along(says, right[4], up[4], k, cycle) });
   }
-  const size = Math.max(...pairs.flatMap(({ y }) => y.map(Math.abs)));
-  const wide = Math.max(...pairs.flatMap(({ x }) => x.map(Math.abs)));
+  const [wide, size] = ["x", "y"].map((axis) => sizeOf(pairs.map((each) => each[axis])));
   const sizes = equal ? [Math.max(size, wide), Math.max(size, wide)] : [wide, size];
   const scales = [right, up].map(([, unit, si], n) => scaled(unit, si, sizes[n]));
   const over = (values, n) => values.map((value) => value / scales[n].si);

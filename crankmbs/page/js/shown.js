@@ -2,6 +2,7 @@
 import { cycleOf } from "./cycle.js";
 import { dragged } from "./drag.js";
 import { Engine } from "./engine.js";
+import { DEGREE } from "./format.js";
 import { deadCentres } from "./geometry.js";
 import { Knobs } from "./knobs.js";
 import { Player } from "./player.js";
@@ -10,7 +11,6 @@ import { Stage } from "./stage.js";
 import { write } from "./svg.js";
 import { deadCentreMarks } from "./words.js";
 
-const DEGREE = Math.PI / 180;
 const LATER = 100; // ms after a knob is let go: the second pass
 
 /** What the page and a lesson's figures have in common. They have `compute()`, `redraw()`, `plots`,

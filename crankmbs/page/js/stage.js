@@ -1,11 +1,13 @@
 /** The mechanism, to scale: crank, rods, pistons, cylinders and flywheel, the forces on one body,
  * and a ring that turns at the mean speed. */
+import { isSame } from "./arrays.js";
 import { proportions } from "./drawing.js";
-import { BODIES, forcesOn } from "./forces.js";
+import { BODIES, forceAt, forcesOn } from "./forces.js";
 import { general, readable, roundBelow } from "./format.js";
 import { turnedBy } from "./geometry.js";
 import { LETTER, boxBeside, looksOf, namesBeside, whichOf } from "./labels.js";
 import { arrowOf, rodOf, webOf } from "./outlines.js";
+import { sizeOf } from "./shapes.js";
 import { Pen, add, set, turn, watched } from "./svg.js";
 
 const REACH = 1.2; // of the crank radius: the longest arrow
@@ -34,18 +36,19 @@ export class Stage {
    * flywheel's inertia to the scene's own; heavy : whether its rim can be dragged. */
   show(cycle, { k, body, ratio, heavy }) {
     const { train } = cycle;
-    Object.assign(this, { cycle, train, k, body });
+    Object.assign(this, { cycle, train, k });
     this.sizes = proportions(train, ratio, this.compression);
     this.measure(cycle, body, k);
     [this.lean] = onScreen(turnedBy(train.cylinders[k].bank, 1, 0));
     this.most = Math.max(...cycle.samplesOf(k).map((v) => v.cylinders[k].gas_pressure), 1);
-    const lead = Math.max(...cycle.leads.map(Math.abs));
+    const lead = sizeOf([cycle.leads]);
     this.magnified = lead > 1e-9 ? Math.max(roundBelow(LEAD / lead), 1) : 0;
-    const { rim, ring, ...others } = this.sizes;
-    const made = JSON.stringify([k, train.cylinders, heavy, this.magnified > 0, ring]);
-    if (made !== this.made) this.make(heavy);
-    const fits = JSON.stringify([made, others, this.size, this.magnified, this.letters]);
-    if (fits !== this.fits) this.fit();
+    const { rim, ring, bounds, each } = this.sizes;
+    const made = [k, train.cylinders, heavy, this.magnified > 0, ring];
+    if (!isSame(made, this.made)) this.make(heavy);
+    const places = [bounds, ...each].map(Object.values);
+    const fits = [made, places, this.size, this.magnified, this.letters];
+    if (!isSame(fits, this.fits)) this.fit();
     [this.made, this.fits] = [made, fits];
     for (const disc of this.discs) set(disc, { r: rim * UNITS });
     this.fitScale();
@@ -53,14 +56,11 @@ export class Stage {
 
   /** The largest force of the cycle on a body [N], and the letters of the longest name. */
   measure(cycle, body, k) {
-    [this.largest, this.letters] = [0, 0];
-    if (!BODIES.includes(body)) return;
+    this.forces = BODIES.includes(body) ? forcesOn(body, this.train, k) : [];
+    this.letters = Math.max(0, ...this.forces.map(({ name }) => name.length));
     let square = 0;
-    for (const v of cycle.samplesOf(body === "crank" ? null : k)) {
-      for (const { name, force: [x, y] } of forcesOn(body, this.train, v, k)) {
-        square = Math.max(square, x * x + y * y);
-        this.letters = Math.max(this.letters, name.length);
-      }
+    for (const v of this.forces.length ? cycle.samplesOf(body === "crank" ? null : k) : []) {
+      for (const { x, y } of this.forces) square = Math.max(square, x(v) ** 2 + y(v) ** 2);
     }
     this.largest = Math.sqrt(square);
   }
@@ -260,16 +260,17 @@ export class Stage {
   }
 
   poseArrows(v) {
-    const { arrows, largest, train, k, body, sizes } = this;
+    const { arrows, forces, largest, train, k, sizes } = this;
     const pen = new Pen(arrows);
-    const acting = largest ? forcesOn(body, train, v, k) : [];
     const names = [];
     const own = sizes.each[k];
-    for (const { name, kind, at, force: [fx, fy], onCrown, onSkirt, onSide } of acting) {
+    for (const each of largest ? forces : []) {
+      const { name, kind, at, onCrown, onSkirt, onSide } = each;
+      const [fx, fy] = forceAt(each, v);
       const size = Math.hypot(fx, fy);
       if (size < SHORTEST * largest) continue;
-      const [dx, dy] = onScreen([fx, fy].map((each) => (each / size) * this.lengthOf(size)));
-      let [x, y] = onScreen([at[0] * UNITS, at[1] * UNITS]);
+      const [dx, dy] = onScreen([fx, fy].map((part) => (part / size) * this.lengthOf(size)));
+      let [x, y] = onScreen(at(v).map((part) => part * UNITS));
       let pushes = false;
       if (onCrown || onSkirt) {
         const far = onCrown ? own.crown : -own.skirt;
@@ -278,7 +279,7 @@ export class Stage {
         [x, y] = pushes ? [x + ux - dx, y + uy - dy] : [x + ux, y + uy];
       }
       if (onSide) {
-        const half = 0.5 * onSide * own.width * UNITS;
+        const half = 0.5 * onSide(v) * own.width * UNITS;
         const [ux, uy] = onScreen(turnedBy(train.cylinders[k].bank, 0, half));
         [x, y] = [x + ux, y + uy];
       }

@@ -93,7 +93,8 @@ export function lineOf({ x, y }, { right, up }) {
     const atY = Math.round(10 * up(y[k]));
     const slope = (atY - fromY) / (atX - fromX);
     if (!(atX > lastX && slope >= low && slope <= high) && k > 0) draw();
-    [lastX, lastY] = [atX, atY];
+    lastX = atX;
+    lastY = atY;
     const wide = lastX - fromX;
     if (wide > 0) {
       low = Math.max(low, (lastY - 2 - fromY) / wide);

@@ -1,19 +1,18 @@
 /** What `movingAt` gives at many crank angles, in columns. At the nodes of the cells of a period
  * and at samples it is kept, so that a flywheel or a load costs nothing here. */
-import { isSame, remembering, wrapped } from "./arrays.js";
+import { countUpTo, isSame, remembering, wrapped } from "./arrays.js";
 import { nodesBetween } from "./rule.js";
 import {
   addCylinder, fillMasses, fillPushes, massColumns, pushColumns, rowOf,
 } from "./tables.js";
 
 const TURN = 2 * Math.PI;
-const SLIVER = 1e-12; // rad: cells whose widths differ by less are of one
+const SLIVER = 1e-12; // rad: angles closer than this are one
 
 class Table {
-  /** angles : so many in a cell; all comes again after a period */
-  constructor(train, angles, stages, period) {
-    Object.assign(this, { angles, length: angles.length });
-    Object.assign(this, repeating(train, angles, stages, period));
+  /** All comes again after a period. */
+  constructor(train, angles, period) {
+    Object.assign(this, { angles, length: angles.length }, repeating(train, angles, period));
     const { turn, whole, ahead, heavy, like } = this;
     this.weight = angles.slice(0, turn).map((theta) => rowOf(train, theta).torque);
     this.row = rowOf(train, angles[0]);
@@ -45,28 +44,33 @@ class Table {
 }
 
 /** After how many angles the masses and all else come again, by how many each cylinder is ahead,
- * and the numbers of the first cylinders with the same masses and with the same push: in cells of
- * one width like cylinders meet the same angles. Else nothing comes again. */
-function repeating({ cylinders, gears, pressure, firing }, angles, stages, period) {
-  const count = Math.round(period / (angles[stages] - angles[0]));
-  const width = period / count;
-  const cells = [TURN, ...cylinders.map(({ phase }) => wrapped(phase, period))]
-    .map((angle) => angle / width);
-  const even = count > 0 && stages * count <= angles.length &&
-    cells.every((each) => Math.abs(each - Math.round(each)) < SLIVER / width) &&
-    angles.every((each, n) => n < stages || Math.abs(each - angles[n - stages] - width) < SLIVER);
-  if (!even) {
+ * and the numbers of the first cylinders with the same masses and with the same push: where like
+ * cylinders meet the same angles. Else nothing comes again. */
+function repeating({ cylinders, gears, pressure, firing }, angles, period) {
+  const { length } = angles;
+  const whole = countUpTo(angles, angles[0] + period - SLIVER);
+  const steps = [TURN, ...cylinders.map(({ phase }) => wrapped(phase, period))];
+  const [turn, ...ahead] = steps.map((far) => stepOf(angles, whole, period, far));
+  if (turn === null || ahead.includes(null)) {
     const own = cylinders.map((_, k) => k);
-    const [turn, whole] = [angles.length, angles.length];
-    return { turn, whole, ahead: own.map(() => 0), heavy: own, like: own };
+    return { turn: length, whole: length, ahead: own.map(() => 0), heavy: own, like: own };
   }
-  const [turn, ...ahead] = cells.map((each) => stages * Math.round(each));
   const heavy = firstLike(cylinders.map(({ own, bank }, k) => [own ? k : null, bank]));
   const like = firstLike(cylinders.map((_, k) => [
     heavy[k], gears[k].applied, ...[pressure[k], firing[k]].flatMap((cycle) =>
       [cycle?.knots, cycle?.coefficients]),
   ]));
-  return { turn, whole: stages * count, ahead, heavy, like };
+  return { turn, whole, ahead, heavy, like };
+}
+
+/** How many angles on all of them come again by so much farther; null where they do not. */
+function stepOf(angles, whole, period, far) {
+  const step = countUpTo(angles, angles[0] + far - SLIVER);
+  for (let n = 0, to = step, turned = 0; n < angles.length; n++, to++) {
+    if (to === whole) [to, turned] = [0, turned + period];
+    if (!(Math.abs(angles[to] + turned - angles[n] - far) < SLIVER)) return null;
+  }
+  return step;
 }
 
 /** The numbers of the first that each of some lists is the same as. */
@@ -74,8 +78,8 @@ function firstLike(lists) {
   return lists.map((own) => lists.findIndex((each) => isSame(each, own)));
 }
 
-/** A maker of a table at crank angles [rad], so many in a cell, which remembers its last; all comes
- * again after a period. */
+/** A maker of a table at crank angles [rad], which remembers its last; all comes again after a
+ * period. */
 export function tableMaker() {
   return remembering((...about) => new Table(...about), (train, angles) => {
     const { crank, gears, cylinders, gravity, friction, pressure, firing } = train;
@@ -92,5 +96,5 @@ export function nodeMaker() {
   const angles = remembering(nodesBetween);
   const tables = tableMaker();
   return (train, edges, rule) =>
-    tables(train, angles(edges, rule), rule.nodes.length, edges[edges.length - 1]);
+    tables(train, angles(edges, rule), edges[edges.length - 1]);
 }

@@ -1,12 +1,11 @@
 /** The crank speed over a run, whole or page by page, with its events and, where it varies, the
  * fuel; the cursor can be dragged. */
-import { drawAxes, frameOf } from "./axis.js";
-import { readable } from "./format.js";
-import { spread } from "./shapes.js";
+import { drawAxes, frameOf, valueUnder } from "./axis.js";
+import { RPM, readable } from "./format.js";
+import { rangeOf, spread } from "./shapes.js";
 import { slid } from "./slide.js";
 import { Pen, add, lineOf, set, watched } from "./svg.js";
 
-const RPM = Math.PI / 30;
 const LETTER = 0.55; // of the type: how wide a letter is
 const LINE = 1.2; // of the type: a row of words
 const STRIP = 0.24; // of the height, for the fuel
@@ -35,7 +34,7 @@ export class TimePlot {
     });
     slid(this.svg, {
       press: ({ isPrimary, button }) => (this.held = this.frame && isPrimary && button === 0),
-      move: (event) => this.move(event),
+      move: (event) => this.on.move(valueUnder(event, this.svg, this.frame)),
       release: () => {
         this.held = false;
         this.place(...this.at);
@@ -81,7 +80,7 @@ export class TimePlot {
     const labels = labelsOf(marks, curve, box, type);
     const rows = Math.max(0, ...labels.map(({ row }) => row + 1));
     const share = Math.min((LINE * type * rows) / (box.bottom - box.top), HEAD);
-    const [low, high] = [Math.min(...curve.y), Math.max(...curve.y)];
+    const [low, high] = rangeOf([curve.y]);
     const holds = { y: [high + (share / (1 - share)) * (high - low)] };
     const shape = { curves: [curve], right: { text: "time", unit: "s" } };
     const about = { type, shape, overAngle: false, left: box.left };
@@ -129,16 +128,9 @@ export class TimePlot {
     pen.end();
   }
 
-  move({ clientX }) {
-    const { box, x } = this.frame;
-    const { left } = this.svg.getBoundingClientRect();
-    const part = Math.min(Math.max((clientX - left - box.left) / (box.right - box.left), 0), 1);
-    this.on.move(x.low + part * (x.high - x.low));
-  }
-
   described() {
     const { curve: { y }, marks } = this;
-    const [low, high] = [Math.min(...y), Math.max(...y)].map((each) => readable(each, 0));
+    const [low, high] = rangeOf([y]).map((each) => readable(each, 0));
     const events = marks.map(({ time, words }) => `${words} at ${readable(time, 3)} s`);
     return [`crank speed over time: ${low} to ${high} rpm`, ...events].join(", ");
   }

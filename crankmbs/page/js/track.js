@@ -2,8 +2,6 @@
 import { countUpTo } from "./arrays.js";
 import { Loop, runningGear, shapeOf } from "./geometry.js";
 
-const NO_GAS = { gas_pressure: 0 };
-
 export class Track {
   /** given : { scene, time, angle, speed, pressure_time, pressure, fuel, decimals } in SI units,
    * the pressures cylinder by cylinder; decimals : that are shown in s, deg and rpm */
@@ -18,11 +16,11 @@ export class Track {
     this.begin = given.time[0];
     this.end = given.time[given.time.length - 1];
     this.leads = [0]; // no ring turns at a mean speed
-    this.samples = Array.from(given.pressure_time, (time) => {
+    const { pressure_time: times } = given;
+    this.samples = Array.from(times.length ? times : [this.begin], (time) => {
       const pressures = this.pressuresAt(time);
       return { cylinders: cylinders.map((_, k) => ({ gas_pressure: pressures(k) })) };
     });
-    if (!this.samples.length) this.samples = [{ cylinders: cylinders.map(() => NO_GAS) }];
     this.to(this.begin);
   }
 

@@ -2,13 +2,11 @@
  * rebuilds only what depends on what was turned.
  */
 import { remembering } from "./arrays.js";
-import { filled } from "./format.js";
+import { MM, RPM, filled } from "./format.js";
 import { setFree } from "./freed.js";
 import { runningGear, shapeOf, strokeOf } from "./geometry.js";
 import { Refused } from "./refused.js";
 
-const RPM = Math.PI / 30;
-const MM = 1e-3;
 const PERCENT = 0.01;
 const SPARE = 1e-3; // of the stroke, over which the ends of rows over the travel are held
 

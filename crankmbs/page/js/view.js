@@ -1,7 +1,7 @@
 /** What is looked at: the first view of a scene, and all that an address may say. */
+import { DEGREE } from "./format.js";
 import { choices } from "./quantities.js";
 
-const DEGREE = Math.PI / 180;
 const FORCES = ["piston", "rod", "crank", "none"];
 
 /** What is looked at first. */

@@ -1,7 +1,5 @@
 /** What the page says in words about the motion that it shows. */
-import { general, readable } from "./format.js";
-
-const RPM = Math.PI / 30;
+import { RPM, general, readable } from "./format.js";
 
 /** The numbers of the headline, [name, value] each, those that say most first; what the quick pass
  * does not have stands as ... in its place. */
