@@ -62,10 +62,17 @@ def resize(page, size):
         drawn(page)
 
 
-def drawn(page):
-    """Wait until what changed the layout is observed and drawn."""
-    frame = "requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done)))"
-    page.evaluate(f"() => new Promise((done) => {frame})")
+def drawn(page, frames=2):
+    """Wait until what changed the layout is observed and drawn, or for more frames."""
+    page.evaluate(_FRAMES, frames)
+
+
+_FRAMES = """(left) => new Promise((done) => {
+  const next = () => (left-- > 0 ? requestAnimationFrame(next) : setTimeout(done));
+  next();
+})"""
+STILL = 10
+"""Frames after which what has not moved stands still: what plays moves in the second."""
 
 
 class Visit:

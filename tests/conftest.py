@@ -6,8 +6,9 @@ import pytest
 from browser import started
 from guards import COLLECTED, quick_guards
 from lesson_visit import kept, lesson, written  # noqa: F401
-from page_engine import engine
+from page_engine import Engine
 from scene_texts import GAS
+from v8 import running
 
 from crankmbs.errors import SceneError
 from crankmbs.scene.read import parse_scene
@@ -61,7 +62,13 @@ def browser():
 
 
 @pytest.fixture(scope="module")
-def page(browser):
-    """The page's engine in a browser."""
-    with engine(browser) as opened:
+def v8():
+    """What computes in a browser, without one."""
+    with running() as opened:
         yield opened
+
+
+@pytest.fixture(scope="module")
+def engine(v8):
+    """The page's engine."""
+    return Engine(v8)

@@ -1,6 +1,5 @@
 """What the figures of the lessons draw and say, asked of their modules without controls."""
 
-import json
 import re
 from functools import cache
 from importlib import import_module
@@ -27,12 +26,29 @@ CHANGED = {
 SIZE = {"width": 400.0, "height": 300.0, "type": 14.0}
 """Of a drawing and its letters [px]."""
 
-_PROBE = """([script, text, { changed, fine, size }]) => {
+_DRAWN = """var cycles = globalThis.cycles ?? new Map();
+var Drawn = class {
+  constructor(tagName) {
+    Object.assign(this, { tagName, attributes: [], children: [], textContent: "" });
+  }
+  setAttribute(name, value) {
+    this.attributes.push({ name, value: String(value) });
+  }
+  append(child) {
+    this.children.push(child);
+  }
+  replaceChildren() {
+    this.children = [];
+  }
+};
+var document = { createElementNS: (_, tagName) => new Drawn(tagName) };"""
+"""All that a lesson's drawing takes of a browser, to tell what was drawn; the cycles are kept."""
+
+_PROBE = """((script, text, { changed, fine, size }) => {
   const { lesson, engine, cycle, turned, given: taken } = eval(script);
   const given = taken.valuesOf(JSON.parse(text));
   const turner = new turned.Turner(given);
   const figures = lesson.start();
-  window.cycles ??= new Map();
   const number = (scene) => {
     const key = JSON.stringify([fine, scene]);
     const own = new engine.Engine(given.rules);
@@ -41,15 +57,15 @@ _PROBE = """([script, text, { changed, fine, size }]) => {
   };
   const told = (each) => ({
     name: each.tagName, text: each.textContent,
-    ...Object.fromEntries(Array.from(each.attributes, ({ name, value }) => [name, value])),
+    ...Object.fromEntries(each.attributes.map(({ name, value }) => [name, value])),
   });
   const drawing = (made, shown, theta) => {
     if (!made.draw) return null;
-    const root = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+    const root = new Drawn("svg");
     made.draw(root, shown, theta, size);
     return [root, ...root.children].map(told);
   };
-  return JSON.stringify(Object.fromEntries(given.figures.map((spec) => {
+  return Object.fromEntries(given.figures.map((spec) => {
     const made = figures[spec.name];
     const values = { ...spec.values, ...changed[spec.name] };
     const scene = made.scene ? made.scene(turner, values, given) : turner.scene(values);
@@ -64,15 +80,15 @@ _PROBE = """([script, text, { changed, fine, size }]) => {
       drawing: drawing(made, shown, shown.angles[100]), at: shown.at(shown.angles[100]),
       solved, textbook: given.textbook ?? null,
     }];
-  })));
-}"""
+  }));
+})"""
 
-_CYCLE = """(number) => {
+_CYCLE = """((number) => {
   const { samples, angles, mean, rows, fluctuation } = [...cycles.values()][number];
-  return JSON.stringify({ samples, angles, mean, rows, fluctuation });
-}"""
+  return { samples, angles, mean, rows, fluctuation };
+})"""
 _SOLVED: WeakKeyDictionary[object, dict[int, dict[str, object]]] = WeakKeyDictionary()
-"""The cycles that a page has solved and told of, by their numbers there."""
+"""The cycles that a V8 has solved and told of, by their numbers there."""
 
 
 @cache
@@ -104,18 +120,19 @@ def lesson_script(name):
     return script
 
 
-def probe(page, script, name):
+def probe(v8, script, name):
     """What all figures of a lesson draw and say: figure -> what; of the lesson on errors with the
     second pass, whose own error does not show beside those that it is about.
 
     A cycle is solved and told of once, as no formula of a lesson has a part in it.
     """
     asked = {"changed": CHANGED, "fine": name == "trust", "size": SIZE}
-    figures = json.loads(page.evaluate(_PROBE, [script, given(name), asked]))
-    cycles = _SOLVED.setdefault(page, {})
+    v8.eval(_DRAWN)
+    figures = v8.call(_PROBE, script, given(name), asked)
+    cycles = _SOLVED.setdefault(v8, {})
     for figure in figures.values():
         number = figure.pop("solved")
         if number not in cycles:
-            cycles[number] = json.loads(page.evaluate(_CYCLE, number))
+            cycles[number] = v8.call(_CYCLE, number)
         figure |= cycles[number]
     return figures

@@ -135,11 +135,12 @@ _MODULES = (
     *("cycle", "drawing", "engine", "forces", "given"),
     *("geometry", "quantities", "stage", "taken", "turned", "words"),
 )
-_PROBE = Path(__file__).with_name("page_probe.js").read_text(encoding="utf-8")
-_TURN = """([script, text, values]) => {
+_PROBE = f"({Path(__file__).with_name('page_probe.js').read_text(encoding='utf-8')})"
+_PICTURE = Path(__file__).with_name("page_picture.js").read_text(encoding="utf-8")
+_TURN = """((script, text, values) => {
   const { given, turned } = eval(script);
-  return JSON.stringify(new turned.Turner(given.valuesOf(JSON.parse(text))).scene(values));
-}"""
+  return new turned.Turner(given.valuesOf(JSON.parse(text))).scene(values);
+})"""
 
 
 def shown_script():
@@ -158,10 +159,10 @@ def given(name):
     return text.partition('id="given">')[2].partition("</script>")[0]
 
 
-def probe(page, script, name, *, fresh=True):
-    """All that the modules say of a case.
+def probe(v8, script, name, *, fresh=False):
+    """All that the modules say of a case, but for its drawing.
 
-    fresh : whether the cycle is computed, else it is that of the last time
+    fresh : whether the cycle is computed, else it is that of the first time
     """
     scene, values, k = CASES[name]
     asked = {
@@ -173,16 +174,22 @@ def probe(page, script, name, *, fresh=True):
             *DOUBLE[: named(scene).double_acting],
             *FORCED[: len(named(scene).force)],
         ],
-        "poses": POSES,
         "fresh": fresh,
     }
-    return json.loads(page.evaluate(_PROBE, [script, given(scene), asked]))
+    return v8.call(_PROBE, script, given(scene), asked)
 
 
-def scene_of(page, script, name):
-    """The scene that the knobs give in a case, as text."""
+def picture(page, script, name):
+    """The drawing of a case in the browser, of the cycle of the first time."""
+    scene, values, k = CASES[name]
+    asked = {"name": name, "values": values, "k": k, "poses": POSES}
+    return json.loads(page.evaluate(_PICTURE, [script, given(scene), asked]))
+
+
+def scene_of(v8, script, name):
+    """The scene that the knobs give in a case."""
     scene, values, _ = CASES[name]
-    return page.evaluate(_TURN, [script, given(scene), values])
+    return v8.call(_TURN, script, given(scene), values)
 
 
 @cache

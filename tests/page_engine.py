@@ -1,12 +1,9 @@
-"""The engine of the page in a browser, and what Python says of the same scenes."""
+"""The engine of the page without a browser, and what Python says of the same scenes."""
 
-import json
 import math
-from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from browser import visiting
 
 from crankmbs.mechanics.peaks import peak
 from crankmbs.mechanics.variables import EVERY, SUMS
@@ -16,30 +13,25 @@ from crankmbs.page.export import encoded, rules
 ANSWERS = Path(__file__).with_name("page_answers.js")
 """What the engine is asked by."""
 
-# as text: a million numbers one by one take the driver of the browser seconds; what is no finite
-# number comes as None
-_ASK = """([name, text]) =>
-  JSON.stringify(answers[name](engine, answers.decoded(JSON.parse(text))))"""
-
-
-@contextmanager
-def engine(browser):
-    """The engine in a browser; asked by the name of what it answers and its arguments."""
-    with visiting(browser, offline=True) as visit:
-        visit.page.evaluate(f"() => {{ window.answers = {joined(ANSWERS)} }}")
-        start = "(text) => { window.engine = answers.engineOf(JSON.parse(text)) }"
-        visit.page.evaluate(start, encoded(rules()))
-        yield Engine(visit.page)
+_ASK = "((name, text) => answers[name](engine, answers.decoded(JSON.parse(text))))"
 
 
 class Engine:
-    """What the page's modules answer."""
+    """What the page's modules answer, asked by the name of the answer and its arguments.
 
-    def __init__(self, page):
-        self.page = page
+    script : of the answers, where it is not that of the page
+    """
+
+    def __init__(self, v8, script=None):
+        self.v8 = v8
+        v8.eval(f"var answers = {script or joined(ANSWERS)};")
+        v8.eval(f"var engine = answers.engineOf({encoded(rules())});")
 
     def ask(self, name, **arguments):
-        return json.loads(self.page.evaluate(_ASK, [name, encoded(arguments)]))
+        return self.asked(name, encoded(arguments))
+
+    def asked(self, name, text):
+        return self.v8.call(_ASK, name, text)
 
     def answer(self, scene, angles):
         return self.ask("answer", scene=exported(scene), angles=np.asarray(angles))

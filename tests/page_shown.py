@@ -1,4 +1,4 @@
-"""What must be true of what the page says and shows as numbers and arrows: Python's motion, the law
+"""What must be true of what the page says and shows as numbers and forces: Python's motion, the law
 of Newton for every drawn body."""
 
 import io
@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 from page_cases import CASES, CURVES, POLARS, SAID, frame, of_cylinder, same, truth
-from page_drawing import drawing_holds
 
 from crankmbs.compare.lectured import LECTURES, lectured
 from crankmbs.mechanics.train import crank_train
@@ -23,7 +22,6 @@ def wrong(name, said):
         "curves": lambda: curves_hold(said, *about),
         "polars": lambda: polars_hold(said, *about),
         "forces": lambda: forces_hold(said["forces"], *about),
-        "drawing": lambda: drawing_holds(said, *about),
         "words": lambda: words_hold(said, *about),
     }
     return [guard for guard, holds in guards.items() if not holds()]

@@ -1,5 +1,5 @@
 """Mutants of what the page says and shows, by module: the text as it is, as the mutant has it, and
-the case of `page_shown` in which it is seen."""
+the case of `page_cases` in which it is seen."""
 
 SHOWN = {
     "turned": [
@@ -147,7 +147,7 @@ SHOWN = {
         ("newtons / 1000", "newtons", "vee"),
     ],
 }  # fmt: skip
-"""A mutant is named with the case in which a guard of `page_shown.wrong` turns red."""
+"""A mutant is named with the case in which a guard of `page_shown` or `page_drawing` turns red."""
 
 DRAWING = {
     "axis": "maps values to pixels, which tests of the cursor and of dragged places go through",

@@ -279,7 +279,7 @@ def test_random_periods_against_the_oracle(seed, formulation):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("until", ["settled", "7 rev"])
-def test_the_page_runs_and_measures_it_as_python_does(page, until):
+def test_the_page_runs_and_measures_it_as_python_does(engine, until):
     scene = load_scene("propeller")
     strikes = AngleTable(file=Table(ROWS.x, tuple(0.002 * y for y in ROWS.y)), period=3.0 * TURN)
     scene = replace(scene, torque=(*scene.torque, strikes)).with_(run__until=until)
@@ -287,7 +287,7 @@ def test_the_page_runs_and_measures_it_as_python_does(page, until):
     scene = scene.with_(run__every="0.5 deg")
     result = simulate(scene, rtol=1e-12)
     assert result.status == 0, result.message
-    found = page.answer(scene, result.data["crank_angle"].values)
+    found = engine.answer(scene, result.data["crank_angle"].values)
     worst = differences(result, found["variables"])
     assert max(worst.values()) < 1e-9, max(worst.items(), key=lambda one: one[1])
     measures = measure(result)

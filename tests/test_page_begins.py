@@ -3,7 +3,7 @@ moves its place, a refused knob that does not lie, a finger that scrolls, a link
 """
 
 import pytest
-from browser import resize
+from browser import STILL, drawn, resize
 from page_scenes import SHOWN
 from page_visit import opened
 
@@ -181,7 +181,7 @@ def test_an_address_of_200_kb_makes_a_short_message(page):
 def test_a_link_with_an_angle_keeps_its_pose_and_does_not_play(browser, tmp_path):
     options = {"motion": "no-preference", "everything": False}
     with opened(browser, tmp_path, "propeller", "#angle=100", **options) as visited:
-        visited.page.wait_for_timeout(300)
+        drawn(visited.page, STILL)
         assert visited.degrees == 100.0
         assert "pause" not in visited.text("#play")
         assert visited.page.get_attribute("#more", "aria-expanded") == "false"
@@ -233,9 +233,9 @@ def finger(page, begin, *places):
     send("touchStart", begin)
     for place in places:
         send("touchMove", place)
-        page.page.wait_for_timeout(20)
+        drawn(page.page)
     send("touchEnd")
-    page.page.wait_for_timeout(100)
+    drawn(page.page)
 
 
 def middle(box):
@@ -250,7 +250,7 @@ def test_a_swipe_over_a_plot_or_the_drawing_scrolls_and_does_not_turn(phone):
         x, y = middle(box)
         x = box["x"] + 8.0 if place == "#stage" else x
         finger(phone, (x, y), *((x, y - step) for step in range(10, 180, 10)))
-        assert phone.page.evaluate("scrollY") > 60.0
+        phone.page.wait_for_function("() => scrollY > 60")
         assert phone.degrees == degrees
 
 

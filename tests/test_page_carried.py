@@ -1,4 +1,4 @@
-"""Pressures carried over to another geometry in the page, as in Python, and what it shows while a
+"""Pressures carried over to another geometry in the engine, as in Python, and what it shows while a
 knob moves."""
 
 import math
@@ -23,26 +23,26 @@ pytestmark = pytest.mark.slow
     "change", [{"length": 0.75}, {"offset": 0.011}, {"offset": -0.007, "radius": 0.9}], ids=str
 )
 @pytest.mark.parametrize("interpolation", ["step", "linear", "pchip", "cubic"])
-def test_pressures_are_carried_over_as_in_python(page, interpolation, change):
+def test_pressures_are_carried_over_as_in_python(engine, interpolation, change):
     for name in ("propeller", "yi_diesel"):
         scene = load_scene(name)
         scene = replace(scene, gas=replace(scene.gas, interpolation=interpolation))
-        assert_carried(page, scene, altered(scene, **change))
+        assert_carried(engine, scene, altered(scene, **change))
 
 
 @pytest.mark.parametrize("change", [{"length": 0.75}, {"offset": 0.011}], ids=str)
-def test_diagrams_and_combustion_are_carried_over_too(page, change):
+def test_diagrams_and_combustion_are_carried_over_too(engine, change):
     diagram = load_scene("v_twin")
     late = replace(diagram.gas.indicator, pre_expansion=1.3)
     fired = replace(
         diagram, gas=replace(diagram.gas, indicator=late), fuel=Fuel(misfire=(MISFIRE,))
     )
     for scene in (diagram, fired, fuelled("yi_diesel_free", motored=POLYTROPE)):
-        assert_carried(page, scene, altered(scene, **change))
+        assert_carried(engine, scene, altered(scene, **change))
 
 
 @pytest.mark.parametrize("change", [{"length": 0.75}, {"offset": 0.011}], ids=str)
-def test_both_ends_are_carried_over_too(page, change):
+def test_both_ends_are_carried_over_too(engine, change):
     steam, turn = load_scene("steam_engine"), 2.0 * math.pi
     rows = tuple(turn * k / 5.0 for k in range(15))
     thrice = Table(
@@ -57,17 +57,17 @@ def test_both_ends_are_carried_over_too(page, change):
         replace(steam, gas=fired, fuel=Fuel(misfire=(MISFIRE,))),
         replace(steam, gas=replace(steam.gas, crank_end=2e5)),
     ):
-        assert_carried(page, scene, altered(scene, **change))
+        assert_carried(engine, scene, altered(scene, **change))
 
 
-def assert_carried(page, before, scene):
+def assert_carried(engine, before, scene):
     train = crank_train(carried_over(scene, before))
     shape = {
         "radius": scene.crank.radius,
         "length": scene.rod.length,
         "offset": scene.piston.offset,
     }
-    found = page.ask("carried", scene=exported(before), shape=shape)
+    found = engine.ask("carried", scene=exported(before), shape=shape)
     size = np.abs(train.pressure[0].coefficients[3]).max()
     expected = {
         "pressure": train.pressure,
@@ -90,11 +90,11 @@ def assert_carried(page, before, scene):
 
 @pytest.mark.parametrize("change", [{}, {"length": 1.08, "offset": 0.004}], ids=["", "geometry"])
 @pytest.mark.parametrize("name", SETTLING)
-def test_what_is_shown_while_a_knob_moves_is_right_to_less_than_a_pixel(page, name, change):
+def test_what_is_shown_while_a_knob_moves_is_right_to_less_than_a_pixel(engine, name, change):
     before = settled(name)
     scene = altered(before, **change)
     result = simulate(carried_over(scene, before), rtol=1e-10)
     moved = {**exported(scene), "gas": exported(before)["gas"]}
-    found = page.ask("dragged", scene=moved, angles=result.data["crank_angle"].values)
+    found = engine.ask("dragged", scene=moved, angles=result.data["crank_angle"].values)
     worst = differences(result, found)
     assert max(worst.values()) < 1e-3, max(worst.items(), key=lambda one: one[1])

@@ -1,5 +1,5 @@
 """The engine of the page against Python: every shipped scene, its settled motion and the lecture's
-formulas, in a real browser."""
+formulas."""
 
 import math
 from dataclasses import replace
@@ -32,11 +32,11 @@ SCENES = [
 
 
 @pytest.mark.parametrize("scene", SCENES)
-def test_motion_every_reaction_and_measure_are_those_of_python(page, scene):
+def test_motion_every_reaction_and_measure_are_those_of_python(engine, scene):
     assert refusals(scene) == ()
     fine = sampled(scene, 0.25)
     result = simulate(fine, rtol=1e-12)
-    found = page.answer(fine, result.data["crank_angle"].values)
+    found = engine.answer(fine, result.data["crank_angle"].values)
     worst = differences(result, found["variables"])
     assert max(worst.values()) < 1e-9, max(worst.items(), key=lambda one: one[1])
     measures = measure(result)
@@ -46,9 +46,9 @@ def test_motion_every_reaction_and_measure_are_those_of_python(page, scene):
 
 
 @pytest.mark.parametrize("name", ["propeller", "yi_diesel_free"])
-def test_the_work_of_a_settled_cycle_is_nothing(page, name):
+def test_the_work_of_a_settled_cycle_is_nothing(engine, name):
     scene = replace(settled(name), gravity=None)
-    found = page.answer(scene, [0.0, scene.period])["measures"]
+    found = engine.answer(scene, [0.0, scene.period])["measures"]
     gas = found["indicated_power"] / found["mean_speed"]
     assert gas == pytest.approx(-found["external_torque"], rel=1e-11)
     assert abs(found["speed_gain"]) < 1e-11 * found["mean_speed"]
@@ -56,7 +56,7 @@ def test_the_work_of_a_settled_cycle_is_nothing(page, name):
 
 @pytest.mark.parametrize("lecture", SHOWN_LECTURES)
 @pytest.mark.parametrize("name", ["yi_diesel", "v_twin", "grega_lecture"])
-def test_the_lectures_formulas_are_those_of_python(page, name, lecture):
+def test_the_lectures_formulas_are_those_of_python(engine, name, lecture):
     scene = load_scene(name)
     theta = np.linspace(0.0, 4.0 * math.pi, 73)
     omega, alpha = 300.0 + 10.0 * np.cos(theta), -3e3 * np.sin(theta)
@@ -64,7 +64,7 @@ def test_the_lectures_formulas_are_those_of_python(page, name, lecture):
     names = ("theta", "omega", "alpha")
     rows = np.column_stack([theta, omega, alpha]).tolist()
     samples = [{**dict(zip(names, row, strict=True)), "shares": []} for row in rows]
-    found = page.ask("lectured", scene=exported(scene), lecture=lecture, samples=samples)
+    found = engine.ask("lectured", scene=exported(scene), lecture=lecture, samples=samples)
     assert found.keys() >= {"side thrust", "torque", "crank pin force x", "main bearing force y"}
     for quantity in found:
         values = expected[quantity]
@@ -73,17 +73,17 @@ def test_the_lectures_formulas_are_those_of_python(page, name, lecture):
         )
 
 
-def test_a_firing_order_and_the_mean_speed_are_passed_on(page):
+def test_a_firing_order_and_the_mean_speed_are_passed_on(engine):
     scene = replace(settled("v_twin"), layout=Layout(firing_order=(1, 3, 2), spacing=0.1))
     result = simulate(scene, rtol=1e-12)
-    found = page.answer(scene, result.data["crank_angle"].values)
+    found = engine.answer(scene, result.data["crank_angle"].values)
     assert max(differences(result, found["variables"]).values()) < 1e-9
     assert "rocking_moment_x" in found["variables"]
     expected = mean_speed(result, last_span(result)).value
     assert found["measures"]["mean_speed"] == pytest.approx(expected, rel=1e-12)
 
 
-def test_unbalanced_throws_rock_as_in_python(page):
+def test_unbalanced_throws_rock_as_in_python(engine):
     """Also those that stand aside from the middle, with what the crank weighs."""
     places = ("0 mm", "100 mm", "260 mm", "300 mm")
     cylinders = tuple(
@@ -99,7 +99,7 @@ def test_unbalanced_throws_rock_as_in_python(page):
         bearings=Bearings(throw_unbalance=unbalances),
     )
     result = simulate(scene, rtol=1e-12)
-    found = page.answer(scene, result.data["crank_angle"].values)
+    found = engine.answer(scene, result.data["crank_angle"].values)
     for axis in "xy":
         rocks = result.data[f"rocking_moment_{axis}"].values
         ours = np.ravel(found["variables"][f"rocking_moment_{axis}"])
@@ -119,9 +119,9 @@ CACHED = """(text) => {
 }"""
 
 
-def test_flywheel_and_load_rebuild_no_table(page):
+def test_flywheel_and_load_rebuild_no_table(engine):
     scene = replace(settled("yi_diesel_free"), gravity=Gravity(acceleration=9.81))
-    flywheel, loads, heavier, longer = page.page.evaluate(CACHED, encoded(exported(scene)))
+    flywheel, loads, heavier, longer = engine.v8.call(f"({CACHED})", encoded(exported(scene)))
     assert flywheel
     assert loads
     assert not heavier

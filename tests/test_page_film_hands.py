@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
-from browser import visiting
+from browser import STILL, drawn, visiting
 from page_visit import Opened
 from test_page_begins import boxes, finger
 from test_page_hands import drag
@@ -152,7 +152,7 @@ def centre_of(visited, what):
 
 
 def test_it_stands_still_where_motion_is_to_be_reduced(page):
-    page.page.wait_for_timeout(150)
+    drawn(page.page, STILL)
     assert time(page) == 0.0
     assert not playing(page)
 
@@ -203,7 +203,7 @@ def test_a_swipe_scrolls_a_finger_across_moves_the_cursor_and_a_tap_does(phone):
     (box,) = boxes(phone, "#upper svg")
     x, y = box["x"] + 0.4 * box["width"], box["y"] + 0.6 * box["height"]
     finger(phone, (x, y), *((x, y - step) for step in range(10, 180, 10)))
-    assert phone.page.evaluate("scrollY") > 60.0
+    phone.page.wait_for_function("() => scrollY > 60")
     assert time(phone) == 0.5
     phone.page.evaluate("scrollTo(0, 0)")
     finger(phone, (x, y), *((x + step, y) for step in range(10, 100, 10)))
@@ -281,6 +281,6 @@ def test_an_axis_of_a_crank_at_rest_can_be_read(page):
 
 def test_large_type_leaves_the_plot_readable(page):
     page.page.click("#large")
-    page.page.wait_for_timeout(200)
+    drawn(page.page)
     assert page.page.evaluate("document.documentElement.scrollWidth") <= LAPTOP[0]
     assert page.page.locator("#upper svg").bounding_box()["height"] > 150.0

@@ -30,18 +30,18 @@ def heavier(name):
     return replace(scene, crank=replace(scene.crank, inertia=inertia))
 
 
-def freed_in(page, scene, every):
+def freed_in(engine, scene, every):
     """The motion of Python and the answer of the page at its angles."""
     found = freed(scene)
     run = replace(found.run, every=Extent(value=every, unit="rad"))
     result = simulate(replace(found, run=run), rtol=1e-12)
     assert result.status == 0, result.message
     angles = result.data["crank_angle"].values
-    return result, page.ask("freeing", scene=exported(scene), angles=angles)
+    return result, engine.ask("freeing", scene=exported(scene), angles=angles)
 
 
-def assert_freed(page, scene, every):
-    result, found = freed_in(page, scene, every)
+def assert_freed(engine, scene, every):
+    result, found = freed_in(engine, scene, every)
     assert found["ending"] == "complete"
     worst = differences(result, found["variables"])
     assert max(worst.values()) < 1e-9, max(worst.items(), key=lambda one: one[1])
@@ -57,20 +57,20 @@ def assert_freed(page, scene, every):
 
 
 @pytest.mark.parametrize("name", DRIVEN)
-def test_a_shipped_scene_is_set_free_as_in_python(page, name):
-    result, found = assert_freed(page, heavier(name), math.radians(0.25))
+def test_a_shipped_scene_is_set_free_as_in_python(engine, name):
+    result, found = assert_freed(engine, heavier(name), math.radians(0.25))
     measures = measure(result)
     assert unlike(measures, found["measures"], sizes(result, measures)) == {}
 
 
 @pytest.mark.parametrize("force", [PUSHES, DRAGS], ids=["pushed", "dragged"])
-def test_unlike_cylinders_with_forces_on_the_pistons_are_set_free_as_in_python(page, force):
-    assert_freed(page, replace(uneven(driven(300.0)), force=force), 0.1)
+def test_unlike_cylinders_with_forces_on_the_pistons_are_set_free_as_in_python(engine, force):
+    assert_freed(engine, replace(uneven(driven(300.0)), force=force), 0.1)
 
 
 @pytest.mark.parametrize("seed", RANDOM)
-def test_a_random_scene_is_set_free_as_in_python(page, seed):
-    assert_freed(page, random_page(seed), 0.1)
+def test_a_random_scene_is_set_free_as_in_python(engine, seed):
+    assert_freed(engine, random_page(seed), 0.1)
 
 
 def lightened(seed):
@@ -80,17 +80,17 @@ def lightened(seed):
     return replace(scene, crank=replace(scene.crank, inertia=light), friction=None)
 
 
-def test_light_cranks_are_set_free_as_in_python_or_come_near_rest(page):
+def test_light_cranks_are_set_free_as_in_python_or_come_near_rest(engine):
     """Near rest is where the energy would be gone within half a degree."""
     swings = []
     for seed in RANDOM[::2]:
         scene = lightened(seed)
         if sentence := refused(freed, scene):
             assert "comes near rest in every cycle" in sentence
-            asked = page.ask("freeing", scene=exported(scene), angles=np.array([0.0, 1.0]))
+            asked = engine.ask("freeing", scene=exported(scene), angles=np.array([0.0, 1.0]))
             assert asked["ending"] == "light"
             continue
-        result, found = freed_in(page, scene, 0.1)
+        result, found = freed_in(engine, scene, 0.1)
         assert max(differences(result, found["variables"]).values()) < 1e-9
         swings.append(np.ptp(result.data["crank_speed"].values) / abs(mean_prescribed(scene)))
     assert len(swings) > 10

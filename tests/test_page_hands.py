@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 import pytest
-from browser import drawn, resize
+from browser import STILL, drawn, resize
 from page_visit import opened
 
 from crankmbs import load_scene
@@ -92,7 +92,7 @@ def test_arrow_keys_turn_and_space_plays(page):
     page.page.wait_for_function("() => Number(document.getElementById('angle').value) > 384")
     keyboard.press("Space")
     held = page.degrees
-    page.page.wait_for_timeout(100)
+    drawn(page.page, STILL)
     assert page.degrees == held
     assert "pause" not in page.text("#play")
 
@@ -105,7 +105,7 @@ def test_keys_in_a_knob_do_not_turn_the_crank(page):
 
 
 def test_the_page_plays_from_a_telling_pose_unless_motion_is_to_be_reduced(browser, tmp_path, page):
-    page.page.wait_for_timeout(150)
+    drawn(page.page, STILL)
     assert page.degrees == pytest.approx(390.0)
     with opened(browser, tmp_path, SCENE, motion="no-preference") as playing:
         playing.page.wait_for_function("() => Number(document.getElementById('angle').value) > 400")
@@ -163,7 +163,7 @@ def test_the_first_pass_comes_at_once_and_its_error_after_the_second(page):
         }"""
     )
     assert "indicated power…" in at_once
-    page.page.wait_for_timeout(300)
+    drawn(page.page, 30)  # far longer than the second pass comes after a knob that is let go
     assert "…" in page.text("#trust")  # the knob is still held
     page.page.locator("#knob-flywheel").dispatch_event("change")
     assert "…" not in page.settle().text("#numbers")

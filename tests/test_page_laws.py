@@ -40,11 +40,11 @@ RUBBED = {
 
 
 @pytest.mark.parametrize("name", RUBBED)
-def test_friction_of_the_pistons_is_that_of_python(page, name):
+def test_friction_of_the_pistons_is_that_of_python(engine, name):
     scene = RUBBED[name]
     assert refusals(scene) == ()
     result = simulate(scene, rtol=1e-12)
-    found = page.answer(scene, result.data["crank_angle"].values)
+    found = engine.answer(scene, result.data["crank_angle"].values)
     assert "friction_force" in found["variables"]
     worst = differences(result, found["variables"])
     assert max(worst.values()) < 1e-9, max(worst.items(), key=lambda one: one[1])
@@ -73,16 +73,16 @@ MEASURED = {
 
 
 @pytest.mark.parametrize("name", MEASURED)
-def test_measured_speeds_are_those_of_python(page, name):
+def test_measured_speeds_are_those_of_python(engine, name):
     scene = MEASURED[name]
     assert refusals(scene) == ()
     result = simulate(scene, rtol=1e-12)
-    found = page.answer(scene, result.data["crank_angle"].values)
+    found = engine.answer(scene, result.data["crank_angle"].values)
     worst = differences(result, found["variables"])
     assert max(worst.values()) < 1e-9, max(worst.items(), key=lambda one: one[1])
 
 
-def test_misfires_and_late_fuel_are_those_of_python(page):
+def test_misfires_and_late_fuel_are_those_of_python(engine):
     base = fuelled("yi_diesel_free", motored=POLYTROPE)
     lists = (Misfire(cylinder=2, cycles="2-3"), Misfire(cylinder=4, cycles="every 2"))
     for fuel in (
@@ -92,17 +92,17 @@ def test_misfires_and_late_fuel_are_those_of_python(page):
     ):
         scene = shortened(replace(base, fuel=fuel), 4.0)
         result = simulate(scene, rtol=1e-12)
-        found = page.answer(scene, result.data["crank_angle"].values)
+        found = engine.answer(scene, result.data["crank_angle"].values)
         assert max(differences(result, found["variables"]).values()) < 1e-9
         assert np.ptp(result.data["fuel"].values) == 1.0
 
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
-def test_where_every_speed_is_periodic_the_starts_mean_is_kept(page, sense):
+def test_where_every_speed_is_periodic_the_starts_mean_is_kept(engine, sense):
     base = replace(settled("yi_diesel_free"), gas=None, torque=(Constant(torque=0.0),))
     scene = replace(base, start=replace(base.start, speed=sense * 300.0))
     assert "balance" in simulate(scene).message
-    found = page.answer(scene, [0.0, sense * scene.period])
+    found = engine.answer(scene, [0.0, sense * scene.period])
     assert found["balanced"]
     assert found["factor"] == pytest.approx(1.0, abs=1e-13)
     assert found["measures"]["mean_speed"] == pytest.approx(sense * 300.0, rel=1e-13)

@@ -4,14 +4,13 @@ import re
 
 import numpy as np
 import pytest
-from page_engine import engine
 
 from crankmbs.page import joined
 
 pytestmark = pytest.mark.slow
 
-_LINE = """([script, x, y]) => eval(script).lineOf(
-  { x, y: y.map((each) => each ?? NaN) }, { right: (v) => 3 * v + 7, up: (v) => 200 - 2 * v })"""
+_LINE = """((x, y) => svg.lineOf(
+  { x, y: y.map((each) => each ?? NaN) }, { right: (v) => 3 * v + 7, up: (v) => 200 - 2 * v }))"""
 ANGLES = np.linspace(0.0, 180.0, 361)
 LINES = {
     "smooth": (ANGLES, 40.0 * np.sin(ANGLES / 20.0)),
@@ -21,12 +20,6 @@ LINES = {
     "sticks": (np.repeat(np.arange(8.0), 3), np.tile([0.0, 30.0, 0.0], 8)),
     "gap": (ANGLES, np.where(np.abs(ANGLES - 90.0) < 10.0, np.nan, 5.0)),
 }
-
-
-@pytest.fixture(scope="module")
-def page(browser):
-    with engine(browser) as opened:
-        yield opened.page
 
 
 def pieces(path):
@@ -45,10 +38,11 @@ def distance(point, corners):
 
 
 @pytest.mark.parametrize("name", LINES)
-def test_a_line_passes_every_point_and_nothing_else(page, name):
+def test_a_line_passes_every_point_and_nothing_else(v8, name):
     x, y = LINES[name]
     text = [None if np.isnan(each) else each for each in y.tolist()]
-    found = pieces(page.evaluate(_LINE, [joined("svg"), x.tolist(), text]))
+    v8.eval(f"var svg = {joined('svg')};")
+    found = pieces(v8.call(_LINE, x.tolist(), text))
     points = np.column_stack([3.0 * x + 7.0, 200.0 - 2.0 * y])
     given = points[np.isfinite(y)]
     for point in given:

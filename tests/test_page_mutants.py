@@ -1,49 +1,25 @@
 """Break the page's engine, one law at a time: the numbers that Python is held against change."""
 
-import json
 import math
 import re
-import time
 from functools import cache
 
 import numpy as np
 import pytest
-from page_engine import ANSWERS, differences
+from page_engine import ANSWERS, Engine, differences
 from page_guards import GUARDS, tasks
 from page_mutants import MUTANTS
+from py_mini_racer import JSEvalException
 
 from crankmbs import simulate
 from crankmbs.page import joined
-from crankmbs.page.export import encoded, rules
+from crankmbs.page.export import encoded
 from crankmbs.page.script import FOLDER
 
 pytestmark = pytest.mark.slow
 
 _VISIBLE = 2e-9  # relative: twice what the engine may differ by from Python
-# in a worker, as a mutant may never come to an end
-_TAKE = """([script, rules]) => {
-  const source = `const tried = ${script};
-    const own = tried.engineOf(${rules});
-    const broken = (error) => JSON.stringify({ broken: String(error) });
-    onmessage = ({ data: [name, text] }) => {
-      try {
-        postMessage(JSON.stringify(tried[name](own, tried.decoded(JSON.parse(text)))));
-      } catch (error) {
-        postMessage(broken(error));
-      }
-    };`;
-  window.worker?.terminate();
-  window.worker = new Worker(URL.createObjectURL(new Blob([source])));
-}"""
-_RUN = """([task, patience]) => new Promise((resolve) => {
-  const timer = setTimeout(() => resolve('{ "broken": "no end" }'), 1000 * patience);
-  worker.onerror = ({ message }) => resolve(JSON.stringify({ broken: message }));
-  worker.onmessage = ({ data }) => {
-    clearTimeout(timer);
-    resolve(data);
-  };
-  worker.postMessage(task);
-})"""
+_STEP = 'var step = () => { if (++steps > most) throw new Error("no end"); };'
 
 
 @pytest.fixture(scope="module")
@@ -59,34 +35,33 @@ def asked(results):
 
 
 @pytest.fixture(scope="module")
-def unbroken(page, asked):
-    """By what is asked, the answer as text and the time that it takes [s]."""
-
-    @cache
-    def answer(key):
-        take(page, joined(ANSWERS))
-        begin = time.perf_counter()
-        text = page.page.evaluate(_RUN, [asked[key], 60.0])
-        return text, time.perf_counter() - begin
-
-    return answer
+def unbroken(v8, asked):
+    """By what is asked, the answer and the steps that it takes."""
+    return cache(lambda key: answered(v8, joined(ANSWERS), asked[key]))
 
 
-def take(page, script):
-    """From now on the answers are those of this script."""
-    page.page.evaluate(_TAKE, [script, encoded(rules())])
+def answered(v8, script, task, most="Infinity"):
+    """What a script answers, and its steps, each a turn of a loop that goes on while something
+    holds; it gives up after the most, as a mutant may never come to an end."""
+    v8.eval(f"{_STEP} var steps = 0, most = {most};")
+    try:
+        found = Engine(v8, script.replace("while (", "while (step(), ")).asked(*task)
+    except JSEvalException as error:
+        if "SyntaxError" in str(error):
+            raise
+        found = {"broken": str(error)}
+    return found, v8.eval("steps")
 
 
-def shows(page, script, task, answer):
-    """Whether a broken script answers otherwise, or takes far longer than the right one."""
-    right, seconds = answer
-    take(page, script)
-    text = page.page.evaluate(_RUN, [task, 3.0 + 20.0 * seconds])
-    return text != right and differs(json.loads(right), json.loads(text))
+def shows(v8, script, task, answer):
+    """Whether a broken script answers otherwise, or takes far more steps than the right one."""
+    right, steps = answer
+    found, _ = answered(v8, script, task, 1000 + 20 * steps)
+    return differs(right, found)
 
 
 def test_the_guards_are_right(asked, unbroken, results):
-    answers = {key: json.loads(unbroken(key)[0]) for key in asked}
+    answers = {key: unbroken(key)[0] for key in asked}
     for name, result in results.items():
         found = answers[f"answer {name}"]
         assert result.status == 0, result.message
@@ -122,15 +97,15 @@ def flat(value):
 
 
 @pytest.mark.parametrize("module", list(MUTANTS))
-def test_a_broken_law_shows_in_the_numbers(page, asked, unbroken, module):
+def test_a_broken_law_shows_in_the_numbers(v8, asked, unbroken, module):
     source = (FOLDER / f"{module}.js").read_text(encoding="utf-8")
     script, survivors = joined(ANSWERS), []
     for find, replace, by in MUTANTS[module]:
         assert source.count(find) == 1, f"{find!r} stands {source.count(find)} times"
         assert script.count(find) == 1, f"{find!r} stands in another module too"
         broken = script.replace(find, replace)
-        if not shows(page, broken, asked[by], unbroken(by)):
-            others = [key for key in asked if shows(page, broken, asked[key], unbroken(key))]
+        if not shows(v8, broken, asked[by], unbroken(by)):
+            others = [key for key in asked if shows(v8, broken, asked[key], unbroken(key))]
             survivors.append((find, replace, f"not shown by {by}, but by {others}"))
     assert survivors == []
 

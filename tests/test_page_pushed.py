@@ -41,11 +41,11 @@ def steady(scene):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", MADE)
-def test_motion_every_reaction_and_measure_are_those_of_python(page, name):
+def test_motion_every_reaction_and_measure_are_those_of_python(engine, name):
     scene = sampled(MADE[name], 0.5)
     assert refusals(scene) == ()
     result = simulate(scene, rtol=1e-12)
-    found = page.answer(scene, result.data["crank_angle"].values)
+    found = engine.answer(scene, result.data["crank_angle"].values)
     assert found["ending"] == "complete", result.message
     worst = differences(result, found["variables"])
     assert max(worst.values()) < 1e-9, max(worst.items(), key=lambda one: one[1])
@@ -62,7 +62,7 @@ def test_motion_every_reaction_and_measure_are_those_of_python(page, name):
     ],
     ids=["unlike", "double-acting"],
 )
-def test_random_ones_are_those_of_python(page, draw, seeds, least):
+def test_random_ones_are_those_of_python(engine, draw, seeds, least):
     same, slow = [], []
     for seed in seeds:
         scene = draw(seed)
@@ -73,7 +73,7 @@ def test_random_ones_are_those_of_python(page, draw, seeds, least):
         every = Extent(value=0.2, unit="rad")
         scene = replace(scene, run=replace(scene.run, every=every))
         result = simulate(scene, rtol=1e-12)
-        found = page.answer(scene, result.data["crank_angle"].values)
+        found = engine.answer(scene, result.data["crank_angle"].values)
         if found["ending"] == "slow":  # comes to rest, turns back, or nearly so
             over_time = any("near standstill" in reason for reason in result.reasons)
             assert result.status == 1 or over_time, seed

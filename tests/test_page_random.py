@@ -22,11 +22,11 @@ MEASURED = sorted({*SEEDS[1::10]} - HELD)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_motion_and_every_reaction_are_those_of_python(page, seed):
+def test_motion_and_every_reaction_are_those_of_python(engine, seed):
     scene = random_page(seed)
     assert refusals(scene) == ()
     result = simulate(scene, rtol=1e-12)
-    found = page.answer(scene, result.data["crank_angle"].values)
+    found = engine.answer(scene, result.data["crank_angle"].values)
     if result.status == 0:
         assert found["ending"] == "complete", result.message
         worst = differences(result, found["variables"])
@@ -50,10 +50,10 @@ def test_in_many_the_pistons_rub_and_in_each_way():
 
 
 @pytest.mark.parametrize("seed", MEASURED)
-def test_measures_are_those_of_python(page, seed):
+def test_measures_are_those_of_python(engine, seed):
     scene = random_page(seed)
     every = Extent(value=0.5 * DEGREE, unit="rad")
     result = simulate(replace(scene, run=replace(scene.run, every=every)), rtol=1e-12)
-    found = page.answer(scene, np.asarray(result.data["crank_angle"].values[[0, -1]]))
+    found = engine.answer(scene, np.asarray(result.data["crank_angle"].values[[0, -1]]))
     measures = measure(result)
     assert unlike(measures, found["measures"], sizes(result, measures)) == {}

@@ -1,56 +1,83 @@
-"""Break what the page shows, one law at a time: the guards of `page_shown` see it."""
+"""Break what the page says and draws, one law at a time: the guards of `page_shown` and
+`page_drawing` see it."""
 
 import pytest
-from page_cases import CASES, probe, scene_of, shown_script
+from browser import visiting
+from page_cases import CASES, picture, probe, scene_of, shown_script, truth
+from page_drawing import drawing_holds
 from page_mutants import MUTANTS
 from page_shown import wrong
 from page_shown_mutants import DRAWING, SHOWN
 from playwright.sync_api import Error
+from py_mini_racer import JSEvalException
 
 from crankmbs.page.script import FOLDER
 
 pytestmark = pytest.mark.slow
 
+DRAWN = ("drawing", "stage")  # what a browser is needed for
+
 
 @pytest.fixture(scope="module")
-def true(page):
-    """What is wrong with each case as the page has it, and the scenes that its knobs give; the
-    cycles are kept."""
-    script = shown_script()
-    found = {case: wrong(case, probe(page.page, script, case)) for case in CASES}
-    return found, {case: scene_of(page.page, script, case) for case in CASES}
+def said(v8):
+    """What the page says of each case; the cycles are kept, and no mutant touches them."""
+    found = {case: probe(v8, shown_script(), case) for case in CASES}
+    yield found
+    assert all(probe(v8, shown_script(), case) == found[case] for case in CASES)
+
+
+@pytest.fixture(scope="module")
+def page(browser):
+    """An empty page, in which the same holds of what is drawn."""
+    with visiting(browser, offline=True) as visit:
+        found = {case: picture(visit.page, shown_script(), case) for case in CASES}
+        yield visit.page
+        assert all(picture(visit.page, shown_script(), case) == found[case] for case in CASES)
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_what_is_shown_is_true(true, case):
-    assert true[0][case] == []
+def test_what_is_said_is_true(said, case):
+    assert wrong(case, said[case]) == []
 
 
-@pytest.mark.parametrize("module", SHOWN)
-def test_what_is_shown_wrongly_is_seen(page, true, module):
+@pytest.mark.parametrize("case", CASES)
+def test_what_is_drawn_is_true(page, said, case):
+    assert drawn_rightly(page, shown_script(), case, said)
+
+
+def drawn_rightly(page, script, case, said):
+    return drawing_holds(said[case] | picture(page, script, case), *truth(case), CASES[case][2])
+
+
+@pytest.mark.parametrize("module", [each for each in SHOWN if each not in DRAWN])
+def test_what_is_said_wrongly_is_seen(v8, said, module):
+    def seen(script, case):
+        if module == "turned":
+            return scene_of(v8, script, case) != scene_of(v8, shown_script(), case)
+        return wrong(case, probe(v8, script, case, fresh=module == "cycle")) != []
+
+    assert survivors(module, seen) == []
+
+
+@pytest.mark.parametrize("module", DRAWN)
+def test_what_is_drawn_wrongly_is_seen(page, said, module):
+    assert survivors(module, lambda *broken: not drawn_rightly(page, *broken, said)) == []
+
+
+def survivors(module, seen):
+    """The mutants that are not seen and end in no error, or are no scripts."""
     source = (FOLDER / f"{module}.js").read_text(encoding="utf-8")
-    script = shown_script()
-    survivors = []
+    script, found = shown_script(), []
     for find, replace, case in SHOWN[module]:
         assert source.count(find) == 1, f"{find!r} stands {source.count(find)} times"
         assert script.count(find) == 1, f"{find!r} stands in another module too"
-        if not seen(page, script.replace(find, replace), case, (module, true[1])):
-            survivors.append((find, replace))
-    assert survivors == []
-
-
-def seen(page, script, case, about):
-    """Whether a mutant breaks a guard or ends in an error, but not as it is no script.
-
-    about : its module, and the scenes that the knobs give without it
-    """
-    module, scenes = about
-    try:
-        if module == "turned":
-            return scene_of(page.page, script, case) != scenes[case]
-        return wrong(case, probe(page.page, script, case, fresh=module == "cycle")) != []
-    except Error as error:
-        return "SyntaxError" not in str(error)
+        try:
+            if not seen(script.replace(find, replace), case):
+                found.append((find, replace))
+        except (Error, JSEvalException) as error:
+            if "SyntaxError" in str(error):
+                found.append((find, replace))
+    return found
 
 
 def test_every_module_has_mutants_or_only_draws():

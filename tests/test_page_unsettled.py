@@ -11,14 +11,14 @@ from crankmbs.scene.loads import Constant
 pytestmark = pytest.mark.slow
 
 
-def test_what_does_not_settle_is_named(page):
+def test_what_does_not_settle_is_named(engine):
     base = replace(settled("coasting"), gravity=None)
     for torque, ending in ((5.0, "runs_away"), (-5.0, "decays")):
         scene = replace(base, torque=(Constant(torque=torque),))
-        assert page.answer(scene, [0.0])["ending"] == ending
+        assert engine.answer(scene, [0.0])["ending"] == ending
 
 
-def test_a_crank_that_comes_to_rest_is_named(page):
+def test_a_crank_that_comes_to_rest_is_named(engine):
     scene = replace(load_scene("coasting"), torque=(Constant(torque=-40.0),))
     assert simulate(scene).status in (0, 1)
-    assert page.answer(scene, [0.3])["ending"] == "slow"
+    assert engine.answer(scene, [0.3])["ending"] == "slow"
