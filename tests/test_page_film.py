@@ -5,13 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from page_engine import ANSWERS, engine
 from page_scenes import FILMS, POLYTROPE, fuelled
 from test_page_script import fold
 
 from crankmbs import InputError, load_scene, shipped_scenes, simulate
-from crankmbs.page import joined, page_of, refusals
-from crankmbs.page.export import encoded
+from crankmbs.page import page_of, refusals
 from crankmbs.page.film import film_of
 from crankmbs.page.refusals import early_end
 from crankmbs.scene.fuel import Fuel
@@ -22,7 +20,6 @@ from crankmbs.scene.run import Extent
 pytestmark = pytest.mark.slow
 
 RPM = math.pi / 30.0
-REPLAYED = "([script, task]) => eval(script).replayed(null, eval(script).decoded(JSON.parse(task)))"
 
 
 @pytest.fixture(scope="module")
@@ -42,12 +39,9 @@ def runs():
 
 
 @pytest.fixture(scope="module")
-def replayed(browser, films):
+def replayed(engine, films):
     """What the page has of a film at times [s], by its own script."""
-    with engine(browser) as opened:
-        yield lambda name, times: opened.page.evaluate(
-            REPLAYED, [joined(ANSWERS), encoded({"film": films[name], "times": times})]
-        )
+    return lambda name, times: engine.ask("replayed", film=films[name], times=times)
 
 
 def times_of(result, count=3000):
