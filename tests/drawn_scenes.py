@@ -1,6 +1,8 @@
 """Scenes as `validation.random_scenes` draws them, by hypothesis: what breaks a law shrinks to the
 plainest machine that does."""
 
+from typing import Any
+
 import numpy as np
 from hypothesis import strategies as st
 
@@ -41,7 +43,7 @@ class _Numbers:
 
 class _Drawn(_Draw):
     def __init__(self, draw):
-        self._rng = _Numbers(draw)
+        self._rng: Any = _Numbers(draw)
 
 
 @st.composite

@@ -220,9 +220,9 @@ def test_counterweights_beside_the_reference_line_have_no_centre_of_mass(tmp_pat
     with pytest.raises(InputError, match=r"at 150 degrees, do not lie along.* add 30 degrees to"):
         _ = beside.crank
     driven = balance(scene.with_(start=None, torque=(), motion={"speed": "3000 rpm"}))
-    for one, part in ((beside, "start"), (driven, "motion")):
+    for found, part in ((beside, "start"), (driven, "motion")):
         with pytest.raises(InputError, match=rf"from the angle of \[{part}\]; the centre"):
-            _ = one.crank
+            _ = found.crank
     cylinders = [{"phase": f"{p} deg", "bank": f"{b} deg"} for p, b in ((30, -30), (330, 30))]
     turned = balance(scene.with_(layout__cylinders=cylinders, start__angle="-30 deg"))
     assert turned.crank["center_of_mass"] == pytest.approx(-0.0414144 / 9.0, rel=1e-5)
