@@ -16,6 +16,8 @@ from validation.oracles.known_machines import COASTING, V_TWIN
 from validation.oracles.machine import Loads, LoadTable, Machine
 from validation.random_scenes import random_scene
 
+pytestmark = pytest.mark.slow
+
 EXACT = stored()
 RETURNING = {117, 275, 290}  # to the knot that a step started on
 FLYWHEEL = Machine(crank_radius=0.1, crank_inertia=0.5, rod_length=0.3)
