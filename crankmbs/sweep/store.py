@@ -96,7 +96,7 @@ def opened(path: Path, plan: Plan) -> Iterator[Store]:
     """
     import zarr
 
-    new = not any(path.glob("[!.]*")) and not (path / ".zattrs").exists()
+    new = not any(path.glob("[!.]*"))  # a killed start may have left a group without words
     if not new:
         _check_resumable(path, plan)
     try:
