@@ -33,7 +33,7 @@ __all__ = ["Piece", "Pieces", "Reduced"]
 
 _TERMS, _MORE = 12, 2  # of the polynomials; more of them in a reduction that checks another, whose
 # pieces are the same: they bound the steps
-_ROUGH, _ROUNDING = 3e-15, 1e-16  # of the largest value: last terms of more want narrower pieces;
+_ROUGH, _ROUNDING = 1e-14, 1e-16  # of the largest value: last terms of more want narrower pieces;
 # terms of less are left out
 _NOISE, _FALLS = 1e-11, 0.25  # what is less may be rounding; by halving of what is none is left
 _NARROW, _STRAIGHT = 1e-6, 3  # rad: in a narrower piece so few terms are all there is
