@@ -36,6 +36,7 @@ _FINEST, _RADAU = 2.3e-14, 1e-13  # tolerances of a step relative to a value, Sc
 _BEYOND = 1.02  # of the way to a knot: a step that goes there, so that it is passed
 _FIRST = 1e-3  # of the step that could be: the first one behind a knot, where it hesitates
 _LAST = 0.9  # of the way to a knot: a step there, where it hesitates
+_GROWS = 10.0  # times at most, from one step of DOP853 to the next
 _LOST = 1e-14  # of the time: no shorter step leads to where a function of Python has a value
 _LEAVES = 1e-12  # of a step: a motion that leaves a limit before has not set out
 
@@ -274,7 +275,7 @@ class _Walk:
         h = self._h
         if control.hesitates and self._at_knot:
             h = _FIRST * self._free
-        elif control.hesitates and _FIRST * self._free < reach < 10 * h:
+        elif control.hesitates and _FIRST * self._free < reach < _GROWS * h:
             reach *= _LAST
         width = min(h, reach, control.bound - self._time)
         return control.before.halved(self._time, width) if control.before else width
