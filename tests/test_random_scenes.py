@@ -18,6 +18,7 @@ from validation.random_scenes import random_scene
 pytestmark = pytest.mark.slow
 
 EXACT = stored()
+TOUCHED = 1e-5  # of the largest speed: its square is rounding of the energy
 
 
 def test_the_scenes_are_all_here_and_of_every_kind():
@@ -40,14 +41,17 @@ def test_errors_are_honest(seed, formulation):
     scene = random_scene(seed)
     result = simulate(scene, formulation=formulation)
     assert result.status == status, result.message
-    time = result.data["time"].values
-    left = len(time) - 1 - samples[-1]
+    time, speed = result.data["time"].values, result.data["crank_speed"].values
+    matched = np.abs(time[:, None] - exact.time).argmin(axis=0)
+    left = len(time) - 1 - matched[-1]
     assert (left > 0) == (status == 1 and len(time) > 1)
-    assert left >= 0
+    # an angle at which the crank turns back within rounding is a sample or none
+    touched = np.count_nonzero(np.abs(speed[1:-1]) < TOUCHED * np.abs(speed).max())
+    assert 0 <= matched[-1] - samples[-1] <= touched
     assert np.all(np.diff(time) > 0.0)
     short = result.error.estimated > scene.run.rtol
     assert short == ("asked for" in result.message)
-    ratios = {name: error.ratio for name, error in true_errors(result, exact, samples).items()}
+    ratios = {name: error.ratio for name, error in true_errors(result, exact, matched).items()}
     assert max(ratios.values()) <= 2.0, (max(ratios, key=ratios.get), ratios)
 
 

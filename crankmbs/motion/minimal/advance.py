@@ -154,20 +154,25 @@ class _Step(NamedTuple):
 
 
 class _Walk:
-    """Step from knot to knot on one branch of the loads, in one sense of rotation."""
+    """Step from knot to knot on one branch of the loads, in one sense of rotation.
+
+    Its state has the angle from the middle of the piece on: the last digit of a crank angle is too
+    coarse where the inertia changes within 1e-5 rad.
+    """
 
     def __init__(
         self, equation: Equation, control: _Control, begin: State, h: float, most: float
     ) -> None:
         self._equation, self._control = equation, control
-        self._time, self._y = begin.time, np.array([begin.theta, begin.omega, 0.0])
+        self._time, self._theta = begin.time, begin.theta
+        self._y = np.array([begin.theta - equation.piece.middle, begin.omega, 0.0])
         self._h, self._most, self._evaluations = h, most, 0
         self._free = h  # the next step, were there no knot near
         self._at_knot = begin.theta in (equation.piece.low, equation.piece.high)
         self._steps: list[tuple[float, float, Array]] = []
         branch = equation.branch
         self._speeds = 0.0, branch.omega_low, branch.omega_high
-        self._origin = begin.time, self._y  # of a step: its time and state, the angle as in slopes
+        self._origin = begin.time, self._y  # of a step: its time and state
         self._steps_of_dop853: StepByStep | None = None
 
     def track(self) -> Track:
@@ -181,17 +186,18 @@ class _Walk:
                 break
         columns = ([step[k] for step in self._steps] for k in range(3))
         begins, widths, rows = (np.array(column) for column in columns)
-        at_end = self._y, self._equation, self._h, self._most, self._evaluations
+        y = np.append(self._theta, self._y[1:])
+        at_end = y, self._equation, self._h, self._most, self._evaluations
         return Track(begins, widths, rows, self._time, *at_end)
 
     def _kinetic(self) -> float:
-        return self._equation.kinetic(float(self._y[0]), float(self._y[1]))
+        return self._equation.kinetic(self._theta, float(self._y[1]))
 
     def _step(self) -> bool:
         """The next step; whether the segment goes on."""
         for function in self._equation.branch.functions:
             function.failure = ""
-        self._origin = self._time, self._y - [self._equation.piece.middle, 0.0, 0.0]
+        self._origin = self._time, self._y
         slopes = self._equation.slopes(*self._origin)
         width, left = self._width(float(slopes[1])), self._control.bound - self._time
         step = self._tried(width, slopes)
@@ -200,11 +206,14 @@ class _Walk:
         self._h, begin, self._at_knot = step.h, self._time, False
         self._free = max(self._free, step.h) if step.width == width else step.h
         if step.x > _LEAVES:
-            self._steps.append((begin, step.width, step.row))
+            row = step.row.copy()
+            row[0, 0] = self._theta
+            self._steps.append((begin, step.width, row))
             self._time = begin + step.x * step.width
         if step.which >= 0:
             return self._landed(step)
         self._y = self._y + step.gained
+        self._theta = float(self._equation.piece.middle + self._y[0])
         if step.width == width == left:
             self._time = self._control.bound
         return True
@@ -213,8 +222,7 @@ class _Walk:
         """A step no longer than this [s], with these slopes at its begin; None where none is short
         enough."""
         equation, control, time = self._equation, self._control, self._time
-        theta, omega, _ = self._y.tolist()
-        begin = State(time, theta, omega, 0.0)
+        begin = State(time, self._theta, float(self._y[1]), 0.0)
         stiff = equation.is_stiff(begin, control.tolerance * control.speed)
         solver = self._solver_of(Radau, width) if stiff else self._dop853(width, slopes)
         failed = solver.step()
@@ -223,12 +231,14 @@ class _Walk:
         lost = any(function.failure for function in functions) and solver.t < _LOST * time
         if failed or lost or (solver.t < width and time + solver.t == time):
             return None
-        row = interpolant(solver)
+        row, middle = interpolant(solver), equation.piece.middle
         row[0] = self._y
         knots = zip(equation.piece[:2], control.angles, (max, min), strict=True)
         low, high = (nearer(knot, angle) for knot, angle, nearer in knots)
-        first = first_exit(row, (low, high), self._speeds)
-        return _Step(row, float(solver.t), solver.y, float(solver.h_abs), *first)
+        x, which, limit = first_exit(row, (low - middle, high - middle), self._speeds)
+        if which == 0:
+            limit = low if limit == low - middle else high
+        return _Step(row, float(solver.t), solver.y, float(solver.h_abs), x, which, limit)
 
     def _dop853(self, width: float, slopes: Array) -> Any:
         """Made once, then set back: to make one takes a tenth of a step."""
@@ -265,9 +275,9 @@ class _Walk:
         alpha : at its begin [rad/s2]
         """
         control, piece = self._control, self._equation.piece
-        theta, omega, _ = self._y.tolist()
+        ahead, omega, _ = self._y.tolist()
         sense = math.copysign(1.0, omega or alpha)
-        distance = sense * ((piece.high if sense > 0.0 else piece.low) - theta)
+        distance = sense * ((piece.high if sense > 0.0 else piece.low) - piece.middle - ahead)
         square = omega * omega + 2.0 * sense * alpha * distance
         reach = math.inf
         if square > 0.0:
@@ -282,14 +292,17 @@ class _Walk:
 
     def _landed(self, step: _Step) -> bool:
         """Put the motion on the limit that it has come to; whether it goes on there."""
-        begin = float(self._y[0])
+        begin, middle = float(self._y[0]), self._equation.piece.middle
         self._y = np.array(value(step.row, step.x))
-        self._y[step.which] = step.limit
-        if step.which == 0 and not self._y[1] * (step.limit - begin) >= 0.0:
-            self._y[1] = 0.0  # it turns there
+        if step.which == 0:
+            self._theta, self._y[0] = step.limit, step.limit - middle
+            if not self._y[1] * (self._y[0] - begin) >= 0.0:
+                self._y[1] = 0.0  # it turns there
+        else:
+            self._theta, self._y[1] = float(middle + self._y[0]), step.limit
         if step.which == 1 or self._y[1] == 0.0 or step.limit in self._control.angles:
             return False
-        sense = math.copysign(1.0, self._y[1])
-        piece = self._equation.pieces.around(step.limit, sense)
+        piece = self._equation.pieces.around(step.limit, math.copysign(1.0, self._y[1]))
+        self._y[0] = step.limit - piece.middle
         self._equation, self._at_knot = replace(self._equation, piece=piece), True
         return True
