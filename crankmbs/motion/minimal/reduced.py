@@ -36,7 +36,7 @@ _TERMS, _MORE = 12, 2  # of the polynomials; more of them in a reduction that ch
 _ROUGH, _ROUNDING = 1e-14, 1e-16  # of the largest value: last terms of more want narrower pieces;
 # terms of less are left out
 _NOISE, _FALLS = 1e-11, 0.25  # what is less may be rounding; by halving of what is none is left
-_NARROW, _STRAIGHT = 1e-6, 3  # rad: in a narrower piece so few terms are all there is
+_ANGLE = 4 * float(np.finfo(float).eps)  # of a period: what rounding may make of an angle, or more
 _ALONE = 5  # functions of the angle that are the train's, not a cylinder's
 _PASSED = 8 * float(np.finfo(float).eps)  # of the angle: a knot this close ahead has been passed
 
@@ -149,12 +149,11 @@ class Reduced:
         while True:
             edges, before = _split(edges, parts), np.repeat(before, parts)
             rows = self._coefficients(edges, phases)
-            narrow = np.diff(edges) <= _NARROW
-            rows[narrow, _STRAIGHT:] = 0.0
             inside = rows.reshape(*rows.shape[:2], -1)
             largest = np.abs(inside).max(axis=(0, 1), initial=1e-300)
             last = (np.abs(inside[:, _TERMS - 2 : _TERMS]) / largest).max(axis=(1, 2))
-            rough = (last > _NOISE) | ((last > _ROUGH) & (last < _FALLS * before))
+            noise = np.maximum(_NOISE, 2.0 * _ANGLE * period / np.diff(edges))
+            rough = (last > noise) | ((last > _ROUGH) & (last < _FALLS * before))
             if not rough.any():
                 break
             parts, before = np.where(rough, 2, 1), np.where(rough, last, before)
