@@ -48,11 +48,13 @@ def inertia(scene, angle):
     return scene.crank.inertia + moving + scene.piston.mass * piston**2
 
 
+@pytest.mark.parametrize("rod", [COASTING.rod, Rod(length=1.0)])
 @pytest.mark.parametrize("gap", [1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
-def test_a_rod_that_just_escapes_the_fold_keeps_its_energy(formulation, gap):
-    """Within sqrt(2 gap) of the fold the rod swings over, and the inertia nearly halves."""
-    rod = dataclasses.replace(COASTING.rod, length=RADIUS * (1.0 + gap), center_of_mass=0.03)
+def test_a_rod_that_just_escapes_the_fold_keeps_its_energy(formulation, gap, rod):
+    """Within sqrt(2 gap) of the fold the rod swings over, and the inertia falls by as much."""
+    at = 0.03 if rod.mass else 0.0
+    rod = dataclasses.replace(rod, length=RADIUS * (1.0 + gap), center_of_mass=at)
     scene = COASTING.with_(rod=rod, gravity=None, run__until="2 rev", run__every="7 deg")
     data = simulate(scene, formulation=formulation).data
     speed = data["crank_speed"]
@@ -61,3 +63,34 @@ def test_a_rod_that_just_escapes_the_fold_keeps_its_energy(formulation, gap):
         exact = [float(speed.values[0] * mpmath.sqrt(of[0] / each)) for each in of]
     assert np.abs(speed.values - exact).max() <= 2.0 * speed.attrs["error_estimate"]
     assert speed.attrs["error_estimate"] < 1e-6
+
+
+@pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9])
+def test_the_mean_force_of_a_driven_crank_is_that_across_the_fold(gap):
+    """Of a rod without mass: piston's mass times acceleration over the cosine of the rod angle."""
+    ratio, speed = 1.0 / (1.0 + gap), 100.0
+    rod, motion = Rod(length=RADIUS / ratio), Motion(speed=speed, angle=0.3)
+    scene = COASTING.with_(rod=rod, gravity=None, start=None, motion=motion, run__until="4 rev")
+    mean = simulate(scene).measures().joints[0].mean
+
+    def force(angle):
+        sine, cosine = mpmath.sin(angle), mpmath.cos(angle)
+        of_rod = 1 - (ratio * sine) ** 2
+        bend = ratio * (1 - 2 * sine**2) / mpmath.sqrt(of_rod)
+        bend += ratio**3 * (sine * cosine) ** 2 / of_rod ** mpmath.mpf("1.5")
+        return -scene.piston.mass * RADIUS * speed**2 * (cosine + bend) / mpmath.sqrt(of_rod)
+
+    with mpmath.workdps(30):
+        fold = mpmath.pi / 2
+        beside = [mpmath.sqrt(2 * gap) * 4**k for k in range(-4, 40)]
+        angles = [fold - x for x in beside] + [fold + x for x in beside] + [0, fold, mpmath.pi]
+        angles = sorted(angle for angle in angles if 0 <= angle <= mpmath.pi)
+        signs = [mpmath.sign(force(angle)) for angle in angles]
+        pairs = list(zip(angles, angles[1:], signs, signs[1:], strict=False))
+        turns = [
+            mpmath.findroot(force, (a, b), solver="anderson") for a, b, s, t in pairs if s != t
+        ]
+        total = mpmath.quad(lambda angle: abs(force(angle)), sorted(angles + turns))
+        exact = float(total / mpmath.pi)
+    assert abs(mean.value - exact) <= 2.0 * mean.error
+    assert mean.error < 1e-6 * exact

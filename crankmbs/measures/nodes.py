@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, friction_knots, knots_over_angle
+from crankmbs.mechanics.train import CrankTrain, edges_over_angle
 from crankmbs.motion.base import Samples
 from crankmbs.motion.cells import Cells
 from crankmbs.motion.motion import Motion
@@ -174,8 +174,7 @@ def nodes_of(motion: Motion, widest: float = _WIDEST) -> Nodes:
 
 def _marks(train: CrankTrain, widest: float) -> tuple[Array, Array]:
     """Crank angles [rad] of one period at which cells end, and those of wide cells."""
-    knots = [crank_angle_knots(train), knots_over_angle(train), friction_knots(train)]
-    marks = np.concatenate(knots)
+    marks = edges_over_angle(train)
     even = np.arange(0.0, train.period, widest)
     return marks, np.concatenate([marks, even])
 

@@ -28,17 +28,21 @@ from crankmbs.numerics.cycle import common_period, tiled
 from crankmbs.numerics.once import once
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.torque import Acting
+from crankmbs.scene.units import DEGREE
 
 __all__ = [
     "CrankTrain",
     "crank_angle_knots",
     "crank_train",
+    "edges_over_angle",
     "friction_knots",
     "knots_over_angle",
     "merged_knots",
     "sign_changes",
     "times_of",
 ]
+
+_WIDE = 6.0 * DEGREE  # rad: as far from a fold all is as smooth as elsewhere
 
 
 @dataclass(frozen=True)
@@ -194,6 +198,37 @@ def knots_over_angle(train: CrankTrain) -> Array:
     knots = [np.mod(tiled(cycle, period), period) for cycle in cycles]
     knots += [part.function.angles_in(period) for part in parts if part.function is not None]
     return np.unique(np.concatenate([np.empty(0), *knots]))
+
+
+def _near_folds(train: CrankTrain) -> Array:
+    """Crank angles [rad] around those where a rod is hardly longer than it must be, ever farther.
+
+    The rod swings over within ``width`` of there, where its formulas have their singularity beside
+    the real angles: in wider cells two rules err alike, if they see it at all.
+    """
+    period, marks = train.period, [np.empty(0)]
+    turns = 2.0 * math.pi * np.arange(round(period / (2.0 * math.pi)))
+    cylinders = zip(train.scene.cylinders, train.scene.running_gear, strict=True)
+    for cylinder, (radius, length, offset) in ((c, gear.shape) for c, gear in cylinders):
+        for fold, gap in ((0.5, length - radius + offset), (-0.5, length - radius - offset)):
+            width = math.sqrt(2.0 * max(gap, 0.0) / radius)
+            if 0.0 < width < _WIDE:
+                beside = width * 2.0 ** np.arange(math.ceil(math.log2(_WIDE / width)))
+                around = fold * math.pi + np.concatenate([-beside, [0.0], beside])
+                marks.append(np.add.outer(turns - cylinder.phase, around).ravel())
+    return np.asarray(np.mod(np.concatenate(marks), period))
+
+
+def edges_over_angle(train: CrankTrain) -> Array:
+    """Crank angles in one period [rad], in any order, between which all that depends on the angle
+    is smooth: knots of pressure, loads and friction, and those around folds that a rod just
+    escapes.
+
+    >>> edges_over_angle(crank_train(load_scene("coasting"))).size
+    0
+    """
+    knots = [crank_angle_knots(train), knots_over_angle(train), friction_knots(train)]
+    return np.concatenate([*knots, _near_folds(train)])
 
 
 def times_of(loads: tuple[Acting, ...]) -> list[float]:

@@ -16,9 +16,7 @@ from crankmbs.mechanics.knots import KNOT, apart, repeat
 from crankmbs.mechanics.speed import SpeedLaw
 from crankmbs.mechanics.train import (
     CrankTrain,
-    crank_angle_knots,
-    friction_knots,
-    knots_over_angle,
+    edges_over_angle,
     sign_changes,
     times_of,
 )
@@ -89,8 +87,7 @@ class Driven:
         low, high = sorted((begin.theta, end.theta))
         train, law = self.way.train, self.way.law
         panels = np.linspace(low, high, count + 1)[1:-1]
-        knots = [crank_angle_knots(train), friction_knots(train), knots_over_angle(train)]
-        inside = repeat(np.concatenate(knots), train.period, low, high)
+        inside = repeat(edges_over_angle(train), train.period, low, high)
         angles = apart(np.concatenate([panels, inside, *self._bends()]))
         kinks = [t for t in times_of(train.loads) if begin.time < t < end.time]
         corners = np.unique([begin.time, *law.corners(begin.time, end.time), *kinks, end.time])

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from crankmbs.mechanics.friction import rubbing
 from crankmbs.mechanics.inertia import fired_torque, reduce
 from crankmbs.mechanics.torque import over_angle
-from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, friction_knots, knots_over_angle
+from crankmbs.mechanics.train import CrankTrain, edges_over_angle
 from crankmbs.mechanics.windows import Phases
 from crankmbs.numerics.arrays import Array, largest_of_row
 from crankmbs.numerics.collocation import Rule, gauss
@@ -351,10 +351,9 @@ def grid_of(train: CrankTrain, rule: Rule, widest: float = _WIDEST) -> Grid:
 
 
 def _edges_of(train: CrankTrain) -> Array:
-    """Crank angles [rad] in one period, in any order: the knots of pressure, loads and friction,
-    the decisions on the fuel, and those around folds that a rod just escapes."""
-    knots = [crank_angle_knots(train), knots_over_angle(train), friction_knots(train)]
-    return np.concatenate([*knots, _near_folds(train), _decisions(train)])
+    """Crank angles [rad] in one period, in any order: `edges_over_angle`, and the decisions on the
+    fuel."""
+    return np.concatenate([edges_over_angle(train), _decisions(train)])
 
 
 def _decisions(train: CrankTrain) -> Array:
@@ -364,25 +363,6 @@ def _decisions(train: CrankTrain) -> Array:
     cycle = train.scene.period
     turns = cycle * np.arange(round(train.period / cycle))
     return np.asarray(np.add.outer(turns, train.law.angles).ravel())
-
-
-def _near_folds(train: CrankTrain) -> Array:
-    """Crank angles [rad] around those where a rod is hardly longer than it must be, ever farther.
-
-    The rod swings over within ``width`` of there, where its formulas have their singularity beside
-    the real angles: in wider cells two rules err alike, if they see it at all.
-    """
-    period, marks = train.period, [np.empty(0)]
-    turns = 2.0 * math.pi * np.arange(round(period / (2.0 * math.pi)))
-    cylinders = zip(train.scene.cylinders, train.scene.running_gear, strict=True)
-    for cylinder, (radius, length, offset) in ((c, gear.shape) for c, gear in cylinders):
-        for fold, gap in ((0.5, length - radius + offset), (-0.5, length - radius - offset)):
-            width = math.sqrt(2.0 * max(gap, 0.0) / radius)
-            if 0.0 < width < _WIDEST:
-                beside = width * 2.0 ** np.arange(math.ceil(math.log2(_WIDEST / width)))
-                around = fold * math.pi + np.concatenate([-beside, [0.0], beside])
-                marks.append(np.add.outer(turns - cylinder.phase, around).ravel())
-    return np.asarray(np.mod(np.concatenate(marks), period))
 
 
 def edges_apart(*marks: Array) -> Array:

@@ -20,9 +20,7 @@ from crankmbs.mechanics.knots import KNOT, apart
 from crankmbs.mechanics.torque import over_angle
 from crankmbs.mechanics.train import (
     CrankTrain,
-    crank_angle_knots,
-    friction_knots,
-    knots_over_angle,
+    edges_over_angle,
     sign_changes,
 )
 from crankmbs.mechanics.windows import Phases
@@ -142,8 +140,7 @@ class Reduced:
 
     def _fitted(self, phases: Phases) -> _Fits:
         train, period = self.train, self.train.period
-        knots = [crank_angle_knots(train), knots_over_angle(train), friction_knots(train)]
-        marks = apart(np.concatenate([*knots, [0.0]]))
+        marks = apart(np.append(edges_over_angle(train), 0.0))
         edges = np.append(marks[marks < period - KNOT], period)
         parts, before = np.ones(len(edges) - 1, dtype=np.intp), np.full(len(edges) - 1, np.inf)
         while True:
