@@ -247,3 +247,25 @@ def test_a_crank_without_a_flywheel_stops_in_its_first_cycle_and_that_is_the_rea
     run = simulate(scene.with_(run__until="1 cycle", run__every="1 deg"), formulation="minimal")
     assert run.data.crank_speed.values.min() < 0.0
     assert float(run.data.kinetic_energy[0]) == pytest.approx(float(said[3]), rel=1e-3)
+
+
+def test_a_motor_that_starts_where_its_torque_is_flat_settles_where_it_falls():
+    """No step towards the balance may be taken for a speed without bound before it is tried."""
+    table = SpeedTable(file=Table((188.5, 230.4, 324.6), (55.0, -37.0, -49.0)))
+    scene = load_scene("coasting").with_(
+        gravity=None, torque=(table,), crank__inertia=0.1, start__speed=5.0, run__until="settled"
+    )
+    settled = simulate(scene)
+    long = simulate(scene.with_(run__until="400 cycles", run__every="none"))
+    assert settled.status == 0, settled.message
+    speeds = (one.data["crank_speed"].values[-1] for one in (settled, long))
+    assert next(speeds) == pytest.approx(next(speeds), rel=1e-9)
+
+
+def test_a_crank_that_a_load_alone_slows_down_does_not_settle():
+    """Its energy falls by a part of itself in every period, to no value above 0."""
+    load = (Quadratic(coefficient=1e-3),)
+    scene = load_scene("coasting").with_(gravity=None, torque=load, run__until="settled")
+    result = simulate(scene)
+    assert result.status == 1
+    assert "it comes to a stop" in result.message

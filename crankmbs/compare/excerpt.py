@@ -134,8 +134,6 @@ class Excerpt:
         """Quantities that this run lacks, and why."""
         if self.train.pressure is None:
             return {"gas torque": "the scene has no gas"}
-        if np.any(self.omega == 0.0):
-            return {"gas torque": "the crank stands still, and it is gas power over speed"}
         return {}
 
     def lacks(self, quantity: str) -> str:

@@ -97,7 +97,7 @@ def observed(
     Returns
     -------
     dict over QUANTITIES: shape (..., n, cylinders), those of the whole engine (..., n); "gas
-    torque" is the gas force's power over omega, not finite where the crank stands still
+    torque" is the gas force times ds/dphi = r (sin(phi) + cos(phi) tan(beta)), also at rest
     """
     omega, alpha = omega[..., None], alpha[..., None]
     sin_phi, cos_phi = np.sin(phi), np.cos(phi)
@@ -106,14 +106,13 @@ def observed(
     through_x = variables["crank_pin_force_x"] + turning * (cos_phi * square + sin_phi * alpha)
     through_y = variables["crank_pin_force_y"] + turning * (sin_phi * square - cos_phi * alpha)
     beta = variables["rod_angle"]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        gas_torque = variables["gas_force"] * variables["piston_velocity"] / omega
+    lever = bodies.crank_radius * (sin_phi + cos_phi * np.tan(beta))
     through = {
         "net force": through_x,
         "rod force": through_x * np.cos(beta) - through_y * np.sin(beta),
         "tangential force": through_x * sin_phi - through_y * cos_phi,
         "radial force": through_x * cos_phi + through_y * sin_phi,
-        "gas torque": gas_torque,
+        "gas torque": variables["gas_force"] * lever,
     }
     return {
         name: through[name] if name in through else variables[variable_of(name)]

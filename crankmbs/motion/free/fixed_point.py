@@ -22,7 +22,8 @@ __all__ = ["Limit", "fixed_point"]
 
 _SEARCH = 1e-9  # relative error of the energy with which the search ends
 _LOCAL = 1e-10  # tolerance of its periods
-_FARTHEST = 1e6  # of the energy: with no fixed point below it is taken to grow without bound
+_FARTHEST = 1e6  # of the energy: where it grows there, too, it is taken to grow without bound
+_SLOWEST = 1e-24  # of the energy: where it falls there, too, it is taken to fall to nothing
 _REACHES = (_FARTHEST, 1e3, 30.0, 3.0, 0.7, 0.3, 0.1, 0.03, 1e-2, 1e-3, 1e-4, 1e-5)  # of the energy
 _BEYOND = 1.5  # of a Newton step: far enough to lie behind the fixed point
 _AT_EDGE = 1e-4  # of the energy: so near a point from where the crank does not turn on
@@ -102,17 +103,18 @@ class _FixedPoint:
         energy changes; the state in which the crank turns the other way where it stalls before."""
         period_map, sense = self._period_map, first.sense
         energy, returned, edge = period_map.energy(state), first, math.inf
+        least = _SLOWEST * energy
         loses = 0.0  # of an energy more, in a period, by the last two
         while True:
             gained = returned.energy - energy
             if abs(gained) <= _NONE * energy:
                 return self._limit_at(energy, sense)
             reach = self._reach(returned, energy, gained, loses, edge)
-            if reach >= _FARTHEST * energy:
-                raise LostError(Ending.RUNS_AWAY)
             other = energy + math.copysign(reach, gained)
             if reach <= _SEARCH * energy:
                 return self._limit_at(other, sense)
+            if other <= least:
+                raise LostError(Ending.STALLS)
             trial = period_map.state(other, sense)
             beyond = period_map.period(self._grid, _LOCAL, trial, one_way=True)
             if beyond.ending is not Ending.COMPLETE or beyond.sense != sense:
@@ -120,6 +122,8 @@ class _FixedPoint:
                     return self._stalled(energy, sense)
                 edge = reach / 3.0
             elif (beyond.energy - other) * gained > 0.0:
+                if reach >= _FARTHEST * energy:
+                    raise LostError(Ending.RUNS_AWAY)
                 edge = edge - reach if edge > reach else math.inf
                 loses = (gained - (beyond.energy - other)) / (other - energy)
                 energy, returned = other, beyond
