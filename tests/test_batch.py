@@ -313,3 +313,11 @@ def test_a_force_that_passes_zero_has_its_mean():
     fine = np.trapezoid(force, time) / (time[-1] - time[0])
     assert abs(fine / group.numbers["side_force_mean"][0, 0] - 1.0) < 2e-7
     assert group.errors["side_force_mean"][0, 0] < 1e-11 * fine
+
+
+def test_cells_beside_jumps_of_the_pressure_are_seen_at_three_nodes():
+    scene = load_scene("propeller").with_(run__until="settled")
+    for interpolation, fewest in (("pchip", 1), ("step", 3)):
+        answer = machine_of(scene.with_(gas__interpolation=interpolation)).answer
+        seen = np.bincount(answer.lectures.sparse // len(answer.rule.nodes))
+        assert seen[1:-1].min() >= fewest

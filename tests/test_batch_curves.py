@@ -13,14 +13,16 @@ pytestmark = pytest.mark.slow
 WIDTHS = np.array([0.05, 0.3, 0.05, 0.02, 0.03, 0.05, 0.01, 0.2])
 
 
-def laid_out(functions, width, stages, alike=1, count=1):
+def laid_out(functions, width, stages, alike=1, count=1, jumps=()):
     """Curves of ``count`` equal cases whose components are functions of the angle and of the cell,
-    and the sizes of their polynomials, densely, shape (cells, places)."""
+    with ``jumps`` beside some of these, and the sizes of their polynomials, densely, shape (cells,
+    places)."""
     rule, edges = gauss(stages), np.append(0.0, np.cumsum(width))
     angle = edges[:-1, None] + width[:, None] * rule.nodes
     cell = np.indices(angle.shape)[0]
     values = np.array([[f(angle, cell) for f in each] for each in functions])  # (r, c, m, s)
-    sizes, nodes = np.sqrt((values**2).sum(axis=1)), peaks.sparse_nodes(width, stages)
+    beside = np.isin(np.arange(len(width)), jumps)
+    sizes, nodes = np.sqrt((values**2).sum(axis=1)), peaks.sparse_nodes(width, stages, beside)
     seen = sizes.reshape(len(sizes), -1)[:, nodes]
     curves = peaks.Curves(
         (count, len(values)),
@@ -33,12 +35,12 @@ def laid_out(functions, width, stages, alike=1, count=1):
     return curves, np.sqrt(((values @ dense.T) ** 2).sum(axis=1))
 
 
-def sought(functions, width=WIDTHS, stages=8):
+def sought(functions, width=WIDTHS, stages=8, jumps=()):
     """Size of the peak of one curve, angle, and what it may miss; its largest size, densely. There
     a rule with more nodes must have it, too."""
-    curves, dense = laid_out([functions], width, stages)
+    curves, dense = laid_out([functions], width, stages, jumps=jumps)
     found = peaks.find_peaks(curves)
-    finer, _ = laid_out([functions], width, stages + 2)
+    finer, _ = laid_out([functions], width, stages + 2, jumps=jumps)
     there = peaks.sizes_at(finer, found)
     assert np.abs(there - found.size) <= 2.0 * found.missed + 1e-13 * found.size
     cell = found.cell[0, 0]
@@ -52,6 +54,16 @@ def test_a_peak_may_lie_in_the_cell_beside_the_nearest_node():
     (peak, turned, missed), _ = sought([lambda angle, cell: np.cos(angle - there)])
     assert abs(peak - 1.0) < 1e-14 + missed
     assert abs(turned - there) < 1e-7
+
+
+def test_a_peak_between_two_jumps_is_found_where_the_middle_of_its_cell_is_as_high_as_beside():
+    def steep(angle, cell):
+        return np.where(cell == 2, 0.93 + 4.0 * (angle - 0.375), np.where(cell == 6, 1.0, 0.93))
+
+    (peak, turned, _), highest = sought([steep], jumps=(1, 2, 3, 5, 6, 7))
+    assert highest == pytest.approx(1.03, rel=1e-12)
+    assert peak == pytest.approx(1.03, rel=1e-12)
+    assert turned == pytest.approx(0.4, abs=1e-9)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])

@@ -212,12 +212,12 @@ def test_a_crank_at_rest_is_compared_but_for_what_is_zero():
     comparison = compare(simulate(scene))
     reasons = {entry.quantity: entry.reason for entry in comparison.left_out}
     assert set(reasons) == {"piston velocity", "piston acceleration"}
-    radius, length, _ = scene.running_gear[0].shape
+    radius, length, offset = scene.running_gear[0].shape
     force = comparison.excerpt.variables["gas_force"][0, 0]
 
     def displacement(angle):
-        swung = length * math.sqrt(1.0 - (radius / length * math.sin(angle)) ** 2)
-        return -radius * math.cos(angle) - swung
+        aside = radius * math.sin(angle) - offset
+        return -radius * math.cos(angle) - math.sqrt(length**2 - aside**2)
 
     lever = (displacement(1.0 + 1e-5) - displacement(1.0 - 1e-5)) / 2e-5
     assert comparison.simulated["gas torque"][0] == pytest.approx(force * lever, rel=1e-8)

@@ -253,3 +253,10 @@ def test_a_settled_run_is_confirmed(tmp_path):
     assert shown.exit_code == 0, shown.output
     assert "settled: a disturbance decays to 90.42 % per period" in shown.output
     assert "exudyn's rigid bodies agree to" in shown.output
+
+
+def test_a_crank_whose_speed_nothing_makes_fluctuate_needs_no_flywheel():
+    light = {"rod__mass": 0.0, "rod__inertia": 0.0, "rod__center_of_mass": 0.0, "piston__mass": 0.0}
+    scene = load_scene("coasting").with_(gravity=None, **light)
+    with pytest.raises(InputError, match="does not fluctuate, whatever"):
+        flywheel(scene, 0.01)

@@ -10,7 +10,7 @@ import numpy as np
 from crankmbs.batch.lectures import CURVES, EACH, LINEAR
 from crankmbs.batch.machine import Machine, Pass
 from crankmbs.batch.motion import Cases, Energies
-from crankmbs.batch.peaks import Curves, Which, sparse_nodes
+from crankmbs.batch.peaks import Curves, Which
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.lagrange import at_nodes
 
@@ -89,7 +89,7 @@ class Motions:
         """Those of the vectors."""
         (k, r, m, s), sizes, vectors = self.sizes.shape, self.sizes, self.vectors
         uncut = self.energies.cuts is None
-        nodes = sparse_nodes(self.tables.width.max(axis=0), s) if uncut else np.arange(m * s)
+        nodes = self.tables.lectures.sparse if uncut else np.arange(m * s)
 
         def some_sizes(some: slice) -> Array:
             seen: Array = sizes[some].reshape(-1, r, m * s)[..., nodes]

@@ -13,6 +13,7 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crankmbs.batch.balances import by_powers, without_crank
 from crankmbs.batch.lectures import OF_RUN, Deviations
@@ -37,6 +38,7 @@ _FEW, _MANY = (6, 5), (10, 8)  # stages of the answer's rule and of its check's
 _SLIVER = 1e-9  # rad: an angle so near an edge is on it
 _SAME = 1e-12  # rad: of phases, no more than rounding
 _FOLDED = 0.05  # cosine of the rod angle
+_JUMP = 1e-5  # of a force: more than what its polynomials are apart where it does not jump
 
 
 class Pass(NamedTuple):
@@ -235,13 +237,26 @@ def _tabulated(
         tables.append((at_begin, -rods[1], -of["external_torque"][2], rods, forces))
         variables.append([of[name] for name in OF_RUN])
     begins, *others = (np.stack(each) for each in zip(*tables, strict=True))
-    shaped = (table.reshape(*table.shape[:-1], *theta.shape[1:]) for table in others)
-    sparse = sparse_nodes(width.max(axis=0), len(rule.nodes))
+    shaped = [table.reshape(*table.shape[:-1], *theta.shape[1:]) for table in others]
+    forces = shaped[-1]
+    sparse = sparse_nodes(width.max(axis=0), len(rule.nodes), _jumps(rule, forces[..., 2, :, :]))
     turns = _turns(trains[0], sense, shares)
     joined = (np.concatenate(each, axis=1) for each in zip(*variables, strict=True))
     of_run = dict(zip(OF_RUN, joined, strict=True))
     lectures = Deviations([train.scene for train in trains], theta, of_run, turns, sparse)
     return Pass(rule, lectures, works, width, begins[:, 0], *shaped)
+
+
+def _jumps(rule: Rule, forces: Array) -> NDArray[np.bool_]:
+    """Beside which of the cells some force, polynomials of shape (..., m, s), jumps from one to the
+    next; the first and the last count, as cylinders may take turns there."""
+    signs = np.ones((2, len(rule.nodes)))
+    signs[0, 1::2] = -1.0  # of Legendre polynomials where a cell begins, and where it ends
+    ends = forces @ (signs @ rule.to_legendre).T
+    apart = np.abs(ends[..., 1:, 0] - ends[..., :-1, 1])
+    largest = np.abs(forces).max(axis=(-2, -1))[..., None]
+    between = (apart > _JUMP * largest).any(axis=tuple(range(apart.ndim - 1)))
+    return np.asarray(np.append(True, between) | np.append(between, True))
 
 
 def _over_period(path: Array, shares: int, power: Array) -> Array:

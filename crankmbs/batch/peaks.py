@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.collocation import gauss, summed
@@ -61,14 +62,16 @@ class Peaks(NamedTuple):
     missed: Array
 
 
-def sparse_nodes(width: Array, stages: int) -> Index:
-    """Numbers of nodes that lie no more than some degrees apart, one or more of each cell; width :
-    of the cells [rad], shape (m,).
+def sparse_nodes(width: Array, stages: int, jumps: NDArray[np.bool_]) -> Index:
+    """Numbers of nodes that lie no more than some degrees apart, one or more of each cell; three or
+    more where curves jump at an end of it, as its neighbours do not tell how they go there.
 
-    >>> sparse_nodes(np.array([0.01, 0.2]), 5)
-    array([2, 5, 7, 9])
+    width : of the cells [rad], jumps : which are beside a jump, shape (m,) each
+
+    >>> sparse_nodes(np.array([0.01, 0.01, 0.2]), 5, np.array([False, True, False]))
+    array([ 2,  5,  7,  9, 10, 12, 14])
     """
-    counts = np.ceil(width / _APART).astype(np.intp)
+    counts = np.maximum(np.ceil(width / _APART).astype(np.intp), 2 * jumps)
     chosen = np.zeros((int(counts.max()) + 1, stages), bool)
     chosen[:2, stages // 2] = True
     for count in range(2, len(chosen)):

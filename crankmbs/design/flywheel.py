@@ -94,7 +94,7 @@ def flywheel(scene: Scene, fluctuation: float = 0.01) -> Flywheel:
     Raises
     ------
     InputError : no scene, no such fluctuation, a load under which nothing settles, a prescribed
-        speed that comes to rest or turns back
+        speed that comes to rest or turns back, a crank whose speed nothing makes fluctuate
 
     >>> wheel = flywheel(load_scene("yi_diesel_free"), 0.01)
     >>> print(round(wheel.inertia.value, 3))
@@ -221,6 +221,12 @@ class _Search:
         """The answer for a scene whose crank has the inertia `present` [kg m2]."""
         assert self._scene.start is not None
         work, rest = self._lecture(self._scene.start.speed)
+        if not work.value > 0.0:
+            raise InputError(
+                "the speed does not fluctuate, whatever the crank's inertia: no gas, weight, load "
+                "over the angle or moving mass does work on the crank and takes it back; add what "
+                "does"
+            )
         whole = work.value / (self._wanted * self._scene.start.speed**2)
         floor = max(self._scene.crank.mass * self._scene.crank.center_of_mass**2, _NARROW * whole)
         low, high = floor, _WIDE * whole
