@@ -90,7 +90,7 @@ export class Plot {
     this.upper = frameOf(top, curves, { ...about, holds: shape.holds });
     this.draws("upper", this.upper, { ...about, last: !strip, name: nameOf(shape) });
     const below = { ...box, top: split, bottom: foot };
-    this.lower = strip ? frameOf(below, seen, { ...about, holds: shape.holdsBelow }) : null;
+    this.lower = strip ? frameOf(below, seen, { ...about, holds: { y: shape.holdsBelow } }) : null;
     this.draws("lower", this.lower, { ...about, last: true, name: "difference" });
     const pen = new Pen(this.lines);
     const line = (frame, curve, style) =>
