@@ -97,7 +97,8 @@ export class Stage {
   /** The sizes of all that stands still. */
   fit() {
     const { root, sizes, parts, axle, which } = this;
-    const drawn = scaledBox(sizes.bounds);
+    const scaled = Object.entries(sizes.bounds).map(([side, value]) => [side, UNITS * value]);
+    const drawn = Object.fromEntries(scaled);
     const words = { letters: this.letters, type: SMALL * this.size.type, lean: this.lean };
     const rows = (this.letters ? FOOT : 0) + (parts.length > 1 ? ROW : 0);
     const foot = rows * words.type;
@@ -113,7 +114,7 @@ export class Stage {
     set(which, { x: middle, y: top + high - 0.4 * this.type, "font-size": this.type });
     const half = (0.5 * this.size.width) / scale;
     const above = top + 0.5 * (high - this.size.height / scale);
-    this.sides = { left: drawn.left, right: drawn.left + drawn.width };
+    this.sides = { ...drawn, right: drawn.left + drawn.width };
     this.edge = { left: middle - half, right: middle + half, top: above };
     parts.forEach((part, k) => this.fitCylinder(part, sizes.each[k]));
     set(axle, { r: 0.13 * sizes.r * UNITS });
@@ -141,7 +142,7 @@ export class Stage {
     if (!largest) return pen.end();
     const newtons = roundBelow(largest / 2.2);
     const long = this.lengthOf(newtons);
-    const { left, top, height } = scaledBox(this.sizes.bounds);
+    const { left, top, height } = this.sides;
     const size = newtons >= 1000 ? `${general(newtons / 1000)} kN` : `${general(newtons)} N`;
     const text = `${size} (length ∝ √force)`;
     const wide = long + LETTER * type * (text.length + 1);
@@ -291,8 +292,4 @@ export class Stage {
 
 function onScreen([x, y]) {
   return [-y, -x];
-}
-
-function scaledBox({ left, top, width, height }) {
-  return { left: left * UNITS, top: top * UNITS, width: width * UNITS, height: height * UNITS };
 }
