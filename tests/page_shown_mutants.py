@@ -111,9 +111,9 @@ SHOWN = {
         ('cycle.gain > 0 ? "gains"', 'cycle.gain < 0 ? "gains"', "drifting"),
         ("Math.abs(cycle.gain), Math.abs(cycle.gain) < 10", "1, Math.abs(cycle.gain) < 10",
          "drifting"),
-        ("n * turn + centre - phase) * 180", "n * turn + centre + phase) * 180", "row"),
+        ("recurring([centre - phase]", "recurring([centre + phase]", "row"),
         ('[top, "top"], [bottom, "bottom"]', '[bottom, "top"], [top, "bottom"]', "vee"),
-        ("const turn = 2 * Math.PI;", "const turn = 4 * Math.PI;", "vee"),
+        ("centre - phase], 2 * Math.PI", "centre - phase], 4 * Math.PI", "vee"),
     ],
     "taken": [
         ("v.cylinders[k][name]]", "v.cylinders[0][name]]", "vee"),

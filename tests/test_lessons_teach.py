@@ -57,3 +57,23 @@ def test_a_number_without_a_unit_is_asked_for_as_such(lesson):
     reply = opened.answer("ask_halved", "16 mm").inner_text()
     assert reply == "“mm” does not fit here: answer by a number without a unit."
     assert "right" in opened.answer("ask_halved", "16").get_attribute("class")
+
+
+@pytest.mark.parametrize(
+    ("name", "figure", "knob", "values"),
+    [("displacement", "series", "rod_ratio", (0.1, 0.25)), ("forces", "side", "share", (1.2, 0.6))],
+)
+def test_the_strip_of_a_difference_keeps_its_scale_so_that_one_sees_it_grow(
+    lesson, name, figure, knob, values
+):
+    opened = lesson(name)
+    seen = []
+    for value in values:
+        opened.type(figure, knob, value)
+        opened.settle()
+        ticks = opened.page.locator(f"#{figure} .plot svg > g").nth(1).locator("text.tick.end")
+        seen.append((ticks.all_inner_texts(), opened.curve(figure, "difference0")))
+    (scale, small), (same, large) = seen
+    assert scale == same
+    assert len(scale) > 1
+    assert small != large

@@ -16,8 +16,6 @@ from crankmbs.page import exported
 from crankmbs.scene.fuel import Fuel
 from crankmbs.scene.tables import Table
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.mark.parametrize(
     "change", [{"length": 0.75}, {"offset": 0.011}, {"offset": -0.007, "radius": 0.9}], ids=str

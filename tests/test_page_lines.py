@@ -7,8 +7,6 @@ import pytest
 
 from crankmbs.page import joined
 
-pytestmark = pytest.mark.slow
-
 _LINE = """((x, y) => svg.lineOf(
   { x, y: y.map((each) => each ?? NaN) }, { right: (v) => 3 * v + 7, up: (v) => 200 - 2 * v }))"""
 ANGLES = np.linspace(0.0, 180.0, 361)

@@ -2,13 +2,10 @@
 
 from dataclasses import replace
 
-import pytest
 from page_scenes import settled
 
 from crankmbs import load_scene, simulate
 from crankmbs.scene.loads import Constant
-
-pytestmark = pytest.mark.slow
 
 
 def test_what_does_not_settle_is_named(engine):

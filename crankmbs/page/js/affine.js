@@ -138,9 +138,7 @@ export class AffinePeriod {
   /** The largest torque over the angle with that of the load at rest [N m]. */
   largest() {
     const { push, branch: { c0 } } = this.cells;
-    let most = 0;
-    for (const each of push) most = Math.max(most, Math.abs(each - c0));
-    return most + Math.abs(c0);
+    return push.reduce((most, each) => Math.max(most, Math.abs(each - c0)), 0) + Math.abs(c0);
   }
 
   /** The motion that begins with an energy [J]: its path, duration [s], least and greatest energy,

@@ -1,5 +1,7 @@
 /** Small helpers on numbers and arrays that know nothing of cranks. */
 
+const HAIR = 1e-9; // of a period
+
 /** x modulo a period, from 0 up to it, also for negative x. */
 export function wrapped(x, period) {
   const rest = x % period;
@@ -11,6 +13,17 @@ export function repeated(angles, period, own = 2 * Math.PI) {
   const found = [];
   for (let turn = 0; turn < period - 1; turn += own) {
     for (const angle of angles) found.push(wrapped(angle + turn, period));
+  }
+  return found;
+}
+
+/** Angles that come again after every period, as often as they lie from one angle to another. */
+export function recurring(angles, period, from, to) {
+  const [low, high] = [Math.min(from, to), Math.max(from, to) + HAIR * period];
+  const found = [];
+  for (let k = 0; k < angles.length; k++) {
+    const first = Math.ceil((low - angles[k]) / period - HAIR);
+    for (let n = first; angles[k] + n * period <= high; n++) found.push(angles[k] + n * period);
   }
   return found;
 }
@@ -55,11 +68,9 @@ export function eliminate(matrix, right, n, m) {
 }
 
 function swapRows(matrix, a, b, width) {
-  for (let k = 0; k < width; k++) {
-    const kept = matrix[a * width + k];
-    matrix[a * width + k] = matrix[b * width + k];
-    matrix[b * width + k] = kept;
-  }
+  const kept = matrix.slice(a * width, (a + 1) * width);
+  for (let k = 0; k < width; k++) matrix[a * width + k] = matrix[b * width + k];
+  for (let k = 0; k < width; k++) matrix[b * width + k] = kept[k];
 }
 
 /** A root of a function that is below 0 at one place and not below at a later one, by halving. */

@@ -130,12 +130,8 @@ export class Stepper {
 
   /** Whether the speed may reach a limit in the cell, as its spread at the nodes tells. */
   mayLeave(limit, sense) {
-    let low = Infinity;
-    let high = -Infinity;
-    for (const slowness of this.slowness) {
-      low = Math.min(low, sense / slowness);
-      high = Math.max(high, sense / slowness);
-    }
+    const speeds = this.slowness.map((each) => sense / each);
+    const [low, high] = [Math.min(...speeds), Math.max(...speeds)];
     const spread = 2 * (high - low);
     return limit >= low - spread && limit <= high + spread;
   }

@@ -1,7 +1,6 @@
-/** The page's choices and words: selects, slow motion, measures, badge. */
+/** The page's choices and words: selects, measures, badge. */
 import { isShape } from "./gas.js";
 import { find } from "./keys.js";
-import { Player } from "./player.js";
 import { choices } from "./quantities.js";
 import { build, listed, set, write } from "./svg.js";
 import { spanOf } from "./view.js";
@@ -34,7 +33,8 @@ export function showChoices(given, cycle, state) {
   const as = JSON.stringify([words, low, high, cycle.train.cylinders.length]);
   if (as === shownAs) return;
   shownAs = as;
-  options(find("cylinder"), cycle.train.cylinders.length);
+  find("cylinder").replaceChildren(...cycle.train.cylinders.map((_, k) =>
+    new Option(`cylinder ${k + 1}`, String(k + 1))));
   for (const select of document.querySelectorAll("select[data-state]")) {
     select.value = state[select.dataset.state];
   }
@@ -42,36 +42,17 @@ export function showChoices(given, cycle, state) {
   Object.assign(find("angle"), { min: low, max: high });
 }
 
-/** Offer slow motion, of which is chosen(factor); the factor that fits a cycle. */
-export function offerSlower({ duration }, chosen) {
-  Player.offer(find("slower"), chosen);
-  const fitting = Player.fitting(duration);
-  find("slower").value = String(fitting);
-  return fitting;
-}
-
 /** Measures, badge, and whether the pressure was carried over. error : of the quick pass */
 export function showWords(given, cycle, error) {
   const all = numbersOf(cycle);
   write(find("trust"), trustOf(cycle, error));
-  const items = listed(find("numbers"), all.length, measure);
+  const items = listed(find("numbers"), all.length, ["div"], ["dt", "dd"]);
   all.forEach((words, n) => words.forEach((text, k) => write(items[n].children[k], text)));
   const { text, good } = badgeOf(cycle, given.endings);
   write(find("badge"), text);
   set(find("badge"), { class: good ? "good" : "drifts" });
   const own = given.scene.gas?.shape;
   find("carried").toggleAttribute("hidden", !own || isShape(cycle.train.shape, own));
-}
-
-function measure() {
-  const item = build(find("numbers"), "div");
-  for (const tag of ["dt", "dd"]) build(item, tag);
-}
-
-function options(select, count) {
-  if (select.options.length === count) return;
-  const names = Array.from({ length: count }, (_, n) => String(n + 1));
-  select.replaceChildren(...names.map((name) => new Option(`cylinder ${name}`, name)));
 }
 
 /** Say a sentence in the place of the badge, or none. stale : whether the picture is another one

@@ -4,7 +4,7 @@
  * A cycle is { knots, coefficients }: knots (n + 1) [rad], the last one period above the first;
  * coefficients (4 x n), by descending power of the angle behind the knot.
  */
-import { countUpTo, wrapped } from "./arrays.js";
+import { countUpTo, repeated, wrapped } from "./arrays.js";
 
 const AROUND = 60; // rows beside those of a period
 const NEAR = 1e-9; // rad: an angle this close below a knot counts as on it
@@ -27,16 +27,8 @@ export function valueAt(cycle, angle) {
 }
 
 /** The knots of a cycle, shifted by an angle and repeated over a period, from 0 to it [rad]. */
-export function knotsOver(cycle, shift, period) {
-  const own = cycle.knots[cycle.knots.length - 1] - cycle.knots[0];
-  const turns = Math.round(period / own);
-  const found = [];
-  for (let turn = 0; turn < turns; turn++) {
-    for (let k = 0; k + 1 < cycle.knots.length; k++) {
-      found.push(wrapped(cycle.knots[k] + turn * own - shift, period));
-    }
-  }
-  return found;
+export function knotsOver({ knots }, shift, period) {
+  return repeated(knots.slice(1).map((each) => each - shift), period, knots.at(-1) - knots[0]);
 }
 
 /** Rows over exactly one period joined to a cycle.
@@ -104,9 +96,9 @@ function hermite(x, y, slope) {
 }
 
 function openCubics(x, y, interpolation) {
-  if (interpolation === "cubic") return hermite(x, y, splineSlopes(x, y));
-  if (interpolation === "pchip") return hermite(x, y, pchipSlopes(x, y));
-  return straight(x, y, interpolation);
+  const slopes = { cubic: splineSlopes, pchip: pchipSlopes }[interpolation];
+  const bends = slopes && x.length > 2;
+  return bends ? hermite(x, y, slopes(x, y)) : straight(x, y, interpolation);
 }
 
 /** Rows repeated on either side make what the slopes at their ends are irrelevant: a slope takes of
@@ -146,7 +138,6 @@ function stepsOf(x, y) {
 function pchipSlopes(x, y) {
   const n = x.length;
   const [width, rise] = stepsOf(x, y);
-  if (n === 2) return [rise[0], rise[0]];
   const slope = new Float64Array(n);
   for (let k = 1; k + 1 < n; k++) {
     if (rise[k - 1] * rise[k] <= 0) continue;
@@ -173,11 +164,10 @@ function endSlope(near, next, rise, riseNext) {
 }
 
 /** Slopes of the twice differentiable spline with the third derivative continuous at the second
- * row from either end ("not a knot"); the parabola through three rows, the line through two. */
+ * row from either end ("not a knot"); the parabola through three rows. */
 function splineSlopes(x, y) {
   const n = x.length;
   const [width, rise] = stepsOf(x, y);
-  if (n === 2) return [rise[0], rise[0]];
   if (n === 3) return parabolaSlopes(width, rise);
   const last = n - 1;
   const [diagonal, lower, upper, right] = [0, 1, 2, 3].map(() => new Float64Array(n));

@@ -46,15 +46,20 @@ class Cycle {
     const { from, to, rows } = this;
     this.train = motion.train;
     this.sense = Math.sign(to - from);
-    this.made = new Map(); // samples, all or of a cylinder alone
+    this.made = new Map(); // samples, and what lectures say at them
     this.times = rows.map(({ time }) => time);
     this.begin = this.times[0];
     this.duration = this.times[POINTS] - this.begin;
     this.mean = (to - from) / this.duration;
     this.drift = this.rows[POINTS].omega - this.rows[0].omega;
     this.energy = motion.path?.cells[0]?.energy;
-    this.answers = new Map();
     this.leads = leadsOf(this);
+  }
+
+  /** What was made under a name before, or is made now. */
+  kept(name, make) {
+    if (!this.made.has(name)) this.made.set(name, make());
+    return this.made.get(name);
   }
 
   /** All variables at the samples. */
@@ -62,15 +67,18 @@ class Cycle {
     return this.samplesOf(null);
   }
 
-  /** Those of the motion and of cylinder k alone, from 0; null: all. */
-  samplesOf(k) {
+  /** Those of the motion and of cylinder k alone, from 0; null: all. every : of so many samples
+   * one */
+  samplesOf(k, every = 1) {
     const { train, rows, made } = this;
-    if (made.has(null)) return made.get(null);
-    if (!made.has(k)) {
-      made.set(k, rows.map((row) =>
-        (k === null ? reactionsAt(train, row) : cylinderReactionsAt(train, row, k))));
-    }
-    return made.get(k);
+    if (every === 1 && made.has("null, 1")) return made.get("null, 1");
+    return this.kept(`${k}, ${every}`, () => rows.filter((_, n) => n % every === 0).map((row) =>
+      (k === null ? reactionsAt(train, row) : cylinderReactionsAt(train, row, k))));
+  }
+
+  /** The speed at the samples [rad/s]. */
+  get speeds() {
+    return this.rows.map(({ omega }) => omega);
   }
 
   get settled() {
@@ -84,7 +92,7 @@ class Cycle {
   /** The fastest less the slowest speed, of the mean. */
   get fluctuation() {
     if (this.measures) return this.measures.fluctuation;
-    const speeds = this.rows.map(({ omega }) => omega);
+    const { speeds } = this;
     return (Math.max(...speeds) - Math.min(...speeds)) / Math.abs(this.mean);
   }
 
@@ -96,14 +104,9 @@ class Cycle {
   /** What a lecture, by its name, says at the samples at the mean speed; of cylinder k alone, or
    * of all and the main bearing. */
   lectured(name, k = null) {
-    const key = `${name}, ${k}`;
-    if (!this.answers.has(key)) {
-      const { train, mean } = this;
-      const at = ({ theta, shares }) =>
-        lecturedAt(train, LECTURES[name], { theta, shares, omega: mean, alpha: 0 }, k);
-      this.answers.set(key, this.rows.map(at));
-    }
-    return this.answers.get(key);
+    const { train, mean, rows } = this;
+    return this.kept(`${name}, ${k}`, () => rows.map(({ theta, shares }) =>
+      lecturedAt(train, LECTURES[name], { theta, shares, omega: mean, alpha: 0 }, k)));
   }
 
   /** All variables at any angle of the cycle; whatever is drawn of one pose asks for the same. */

@@ -1,6 +1,9 @@
 /** Dragging the mechanism: what the pointer holds says at which crank angle it wants it, or how
  * heavy the flywheel. */
 import { inertiaOfRim } from "./drawing.js";
+import { strokeOf, throwAngles } from "./geometry.js";
+
+const HAIR = 1e-6; // rad
 
 /** Listen to a stage.
  *
@@ -36,8 +39,7 @@ export function dragged(stage, on) {
 
 /** Where the pointer is in the drawing's units. */
 function place(root, { clientX, clientY }) {
-  const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(root.getScreenCTM().inverse());
-  return { x, y };
+  return new DOMPoint(clientX, clientY).matrixTransform(root.getScreenCTM().inverse());
 }
 
 /** The angle of a place about the crank axis, from X upwards to Y on the left [rad]. */
@@ -48,7 +50,7 @@ function angleOf({ x, y }) {
 /** By how much what is held is away from the pointer: it must not jump. */
 function offsetOf(stage, { kind, k }, at, theta) {
   if (kind === "rim") return Math.hypot(at.x, at.y) - 1000 * stage.sizes.rim;
-  if (kind === "piston") return along(stage, k, at) - positionAt(stage, k, theta);
+  if (kind === "piston") return along(stage, k, at) - positionAt(stage.train, k, theta);
   return angleOf(at) - theta;
 }
 
@@ -59,9 +61,17 @@ function follow(stage, held, at, on) {
   } else if (held.kind === "piston") {
     on.turn(towards(stage, held.k, along(stage, held.k, at) - held.offset, on.theta()));
   } else {
-    const step = angleOf(at) - held.offset - on.theta();
-    on.turn(on.theta() + step - 2 * Math.PI * Math.round(step / (2 * Math.PI)));
+    on.turn(on.theta() + nearest(angleOf(at) - held.offset - on.theta()));
   }
+}
+
+function positionAt({ gears, cylinders }, k, theta) {
+  return gears[k].loop.at(theta + cylinders[k].phase).x;
+}
+
+/** A step of the crank without whole turns [rad]. */
+function nearest(step) {
+  return step - 2 * Math.PI * Math.round(step / (2 * Math.PI));
 }
 
 /** How far a place is along a cylinder [m]. */
@@ -70,22 +80,14 @@ function along(stage, k, { x, y }) {
   return (-y * Math.cos(bank) - x * Math.sin(bank)) / 1000;
 }
 
-function positionAt({ train }, k, theta) {
-  return train.gears[k].loop.at(theta + train.cylinders[k].phase).x;
-}
-
-/** The crank angle nearest to the present one at which the piston comes closest to a position: from
- * where it is the crank goes on in the sense in which it can follow. */
-function towards(stage, k, wanted, theta) {
-  const far = (angle) => Math.abs(positionAt(stage, k, angle) - wanted);
-  let best = theta;
-  for (const sense of [1, -1]) {
-    let at = theta;
-    for (let step = Math.PI / 12; step > 1e-5; step /= 2) {
-      while (far(at + sense * step) < far(at)) at += sense * step;
-      while (far(at - sense * step) < far(at)) at -= sense * step;
-    }
-    if (far(at) < far(best) - 1e-9) best = at;
-  }
-  return best;
+/** The crank angle nearest to the present one at which the piston comes closest to a position; from
+ * a dead centre the crank goes on. */
+function towards({ train }, k, wanted, theta) {
+  const { shape, top } = train.gears[k];
+  const stroke = strokeOf(shape);
+  const above = Math.min(Math.max(top - wanted, 0), stroke);
+  const steps = throwAngles(above, stroke - above, shape)
+    .map((angle) => nearest(angle - train.cylinders[k].phase - theta));
+  const [on, back] = steps.sort((a, b) => b - a);
+  return theta + (Math.abs(back) < Math.abs(on) - HAIR ? back : on);
 }

@@ -18,11 +18,12 @@ export function proportions(train, ratio, compression) {
   const each = train.gears.map((gear) => cylinderOf(gear, compression));
   const r = Math.max(...each.map((one) => one.r));
   const ring = WIDEST * r;
-  const ends = train.cylinders.flatMap(({ bank }, k) => endsOf(each[k], bank));
+  const corners = train.cylinders.flatMap(({ bank }, k) => endsOf(each[k], bank));
   const edge = ring + 0.15 * r;
-  const far = Math.max(edge, ...ends.map(([y]) => Math.abs(y)));
   const step = 0.1 * r; // it is not drawn anew to another scale with every little change
-  const high = step * Math.ceil(Math.max(...ends.map(([, x]) => x), edge) / step);
+  const reach = (ends) => Math.max(edge, step * Math.ceil(Math.max(...ends) / step));
+  const far = reach(corners.map(([y]) => Math.abs(y)));
+  const high = reach(corners.map(([, x]) => x));
   const bounds = { left: -far, top: -high, width: 2 * far, height: high + edge };
   return { each, r, rim: rimOf(r, ratio), ring, bounds };
 }

@@ -3,7 +3,7 @@
  * The engine keeps what it made last. A new flywheel, load or speed rebuilds no table; a new mass
  * only sums what the loops have; a new shape, all.
  */
-import { remembering } from "./arrays.js";
+import { recurring, remembering, repeated } from "./arrays.js";
 import { knotsOver } from "./cubics.js";
 import { settleFree } from "./freed.js";
 import { appliedMarks, appliedTo } from "./applied.js";
@@ -55,7 +55,7 @@ export class Engine {
     const share = piston.crank_end_share;
     const { pressure, firing, crank_end } =
       this.pressures(scene.gas, shape, share, quick ? SEEN : DIAGRAM);
-    return {
+    return { // not all of the scene: so many names would be slow to look up
       gears, shape, piston, crank, cylinders, levers, throws, gravity, friction, loads, fuel,
       period, pressure, firing, crank_end, applies: scene.force.length > 0,
     };
@@ -119,14 +119,8 @@ export class Engine {
 
   pass(scene, train, grid, warm) {
     const { start, run } = scene;
-    if (scene.freed) {
-      const { train: loaded, found } = settleFree(train, grid, start);
-      return new Settled(loaded, grid, start, found);
-    }
-    if (run.settled) {
-      const found = settle(train, grid, start, warm);
-      return new Settled(train, grid, start, found);
-    }
+    if (scene.freed) return new Settled(grid, start, settleFree(train, grid, start));
+    if (run.settled) return new Settled(grid, start, settle(train, grid, start, warm));
     const { inertia } = reduceAt(train, start.angle);
     const sense = start.speed < 0 ? -1 : 1;
     const energy = 0.5 * inertia * start.speed * start.speed;
@@ -139,17 +133,14 @@ export class Engine {
 
 /** Crank angles [rad] at which loads over the angle have knots and the fuel is decided. */
 function marksOf(knots, decisions, own, period) {
-  const turns = Array.from({ length: Math.round(period / own) }, (_, turn) => turn * own);
-  const decided = decisions.flatMap((angle) => turns.map((turn) => angle + turn));
-  return [decided, ...knots.map((each) => knotsOver({ knots: each }, 0, period))];
+  const over = knots.map((each) => knotsOver({ knots: each }, 0, period));
+  return [repeated(decisions, period, own), ...over];
 }
 
 /** A free motion from its start to its end. */
 class Free {
-  constructor(train, grid, travel) {
-    Object.assign(this, { train, grid, path: travel.path, ending: travel.ending });
-    this.from = travel.start.angle;
-    this.to = travel.theta;
+  constructor(train, grid, { path, ending, start, theta }) {
+    Object.assign(this, { train, grid, path, ending, from: start.angle, to: theta });
   }
 
   /** The sample at a crank angle [rad] between `from` and `to`; of : `movingAt` there. */
@@ -165,16 +156,11 @@ class Free {
 
 /** A settled motion, over a period from its start. */
 class Settled {
-  constructor(train, grid, start, found) {
-    const { ending, motion, factor, balanced, theta, sense, period } = found;
+  constructor(grid, start, { train, ending, motion, factor, balanced, theta, sense, period }) {
     Object.assign(this, { train, grid, ending, factor, balanced, sense, period });
     if (ending !== "complete") return;
-    this.path = motion.path;
-    this.base = theta;
-    this.duration = motion.time;
-    this.from = start.angle;
-    this.to = start.angle + sense * period;
-    this.late = 0;
+    Object.assign(this, { path: motion.path, base: theta, duration: motion.time, late: 0 });
+    Object.assign(this, { from: start.angle, to: start.angle + sense * period });
     this.late = this.at(start.angle).time;
   }
 
@@ -191,12 +177,8 @@ class Settled {
 
   /** Crank angles from one to another between which all is smooth. */
   smoothBetween(from, to) {
-    const { period, sense, base } = this;
     const own = this.path.cells.map((cell) => cell.from);
-    const turn = (theta) => Math.floor((sense * (theta - base)) / period);
-    const [first, last] = [turn(from), turn(to)];
-    const turns = Array.from({ length: last - first + 1 }, (_, k) => sense * period * (first + k));
-    return inside(turns.flatMap((far) => own.map((each) => each + far)), from, to);
+    return inside(recurring(own, this.period, from, to), from, to);
   }
 }
 
@@ -247,12 +229,8 @@ class Prescribed {
 
   /** Crank angles from one to another between which all is smooth. */
   smoothBetween(from, to) {
-    const period = this.edges[this.edges.length - 1];
-    const [low, high] = [Math.min(from, to), Math.max(from, to)];
-    const angles = this.law.bendsBetween(low, high);
-    for (let turn = Math.floor(low / period); turn * period < high; turn++) {
-      for (const edge of this.edges) angles.push(edge + turn * period);
-    }
-    return inside(angles, from, to);
+    const { edges, law } = this;
+    const own = recurring(edges.slice(1), edges[edges.length - 1], from, to);
+    return inside([...own, ...law.bendsBetween(from, to)], from, to);
   }
 }

@@ -43,7 +43,7 @@ class Film {
     this.player.slower = this.first = Player.fitting(duration, RATES, SECONDS);
     const n = RATES.indexOf(this.first);
     const rates = RATES.slice(n, n + SLOWEST + 1);
-    Player.offer(find("slower"), (rate) => this.slow(rate), rates);
+    Player.offer(find("slower"), (rate) => this.slow(rate), this.first, rates);
   }
 
   /** Play so many times slower; of the run as small a part is then plotted. */

@@ -6,6 +6,7 @@
  * sought together, period by period.
  */
 import { AffinePeriod } from "./affine.js";
+import { eliminate } from "./arrays.js";
 import { lastSpan } from "./measures.js";
 import { Section, settle } from "./settled.js";
 import { speedLaw } from "./speed.js";
@@ -28,8 +29,8 @@ function meanPrescribed(motion, { until, in_time: inTime }, period) {
   return (to - from) / ((inTime ? until : law.timeAt(to)) - law.timeAt(from));
 }
 
-/** The machine with the load that balances it, and what it settles to at the mean speed of a start
- * { angle, speed }, as `settle` gives it: ending "complete", "light" where it comes near rest, or
+/** What a machine with the load that balances it settles to at the mean speed of a start { angle,
+ * speed }, as `settle` gives it: ending "complete", "light" where it comes near rest, or
  * "wanders" where none is found. */
 export function settleFree(train, grid, start) {
   const sense = Math.sign(start.speed);
@@ -39,7 +40,7 @@ export function settleFree(train, grid, start) {
   const found = settle({ ...even.train, loads: [constant(torque)] }, even.grid, start, null);
   if (even.train === train) {
     const ending = found.ending === "complete" ? "complete" : "light";
-    return { train: loaded(torque), found: { ...found, ending } };
+    return { ...found, train: loaded(torque), ending };
   }
   return withDrag({ grid, start, sense, loaded }, torque, found.motion);
 }
@@ -64,52 +65,30 @@ function balance({ train, grid }, start, sense) {
 
 /** Energy at the begin and load such that a period gains nothing and takes the time it must, by
  * Broyden's method: from those of the motion in which friction is even, whose duration changes with
- * the energy by `slope`. Both are counted in joules, the load by its work. */
+ * the energy by `slope`. Both are counted in joules, the load by its work. Of the energy a period
+ * leaves the factor, and half of the load's work is done on average. */
 function withDrag({ grid, start, sense, loaded }, torque, { path, slope }) {
   const even = path.cells[0].energy;
-  let [at, step, last, inverse] = [[even, 0], null, null, null];
+  let [at, step, jacobian] = [[even, 0], null, null];
   for (let n = 0; n < ROUNDS; n++) {
     const train = loaded(torque + (sense * at[1]) / grid.edges[grid.edges.length - 1]);
     const section = new Section(train, grid, start, sense);
     const shot = section.shot(at[0]);
-    if (shot.ending !== "complete") return { train, found: { ending: "light" } };
+    if (shot.ending !== "complete") return { train, ending: "light" };
     const gained = shot.energy - at[0];
     const late = shot.time - section.period / Math.abs(start.speed);
     if (Math.abs(gained) <= CLOSE * at[0] && Math.abs(late) <= CLOSE * shot.time) {
-      return { train, found: section.found("complete", shot, { factor: shot.factor }) };
+      return section.found("complete", shot, { factor: shot.factor });
     }
     const off = [gained, late / slope];
-    inverse = step === null ? roughly(shot.factor) : updated(inverse, step, sum(off, last, -1));
-    step = product(inverse, off).map((each) => -each);
-    [last, at] = [off, sum(at, step)];
+    const bent = (each, k) =>
+      each + (off[k >> 1] * step[k & 1]) / (step[0] ** 2 + step[1] ** 2);
+    jacobian = jacobian?.map(bent) ?? Float64Array.of(shot.factor - 1, 1, 1, 0.5);
+    step = off.map((each) => -each);
+    eliminate(jacobian.slice(), step, 2, 1);
+    at = at.map((each, k) => each + step[k]);
   }
-  return { train: loaded(torque), found: { ending: "wanders" } };
-}
-
-/** The inverse of how gain and delay, as energies, change with energy and load: of the energy a
- * period leaves the factor, and half of the load's work is done on average. */
-function roughly(factor) {
-  const [a, b] = [factor - 1, 0.5];
-  const scale = 1 / (a * b - 1);
-  return [[scale * b, -scale], [-scale, scale * a]];
-}
-
-/** The same after a step that changed both by so much. */
-function updated(inverse, step, change) {
-  const said = product(inverse, change);
-  const [[a, b], [c, d]] = inverse;
-  const row = [step[0] * a + step[1] * c, step[0] * b + step[1] * d];
-  const scale = 1 / (step[0] * said[0] + step[1] * said[1]);
-  return inverse.map((own, i) =>
-    own.map((each, j) => each + scale * (step[i] - said[i]) * row[j]));
-}
-
-function product([[a, b], [c, d]], [x, y]) {
-  return [a * x + b * y, c * x + d * y];
-}
-
-function sum([a, b], [c, d], factor = 1) {
-  return [a + factor * c, b + factor * d];
+  return { train: loaded(torque), ending: "wanders" };
 }
 
 /** A constant load [N m]. */

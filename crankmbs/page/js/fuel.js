@@ -16,10 +16,7 @@ export function decisionAngles(fuel, cylinders, period) {
 /** The decisions on the way of a crank that turns in one sense. */
 export class Firing {
   constructor(fuel, cylinders, period, start) {
-    this.fuel = fuel;
-    this.cylinders = cylinders;
-    this.period = period;
-    this.start = start;
+    Object.assign(this, { fuel, cylinders, period, start });
     this.shares = new Float64Array(fuel === null ? 0 : cylinders.length);
     this.made = new Map(); // shares that come again are the same object
     this.setIn = null; // speed at the decision at which the fuel set in

@@ -7,8 +7,8 @@
  * within each stroke between the true dead centres, at the same compression ratio; a diagram of
  * polytropes is one of the volume already.
  */
-import { countUpTo, distinct, once } from "./arrays.js";
-import { joined, knotsOver, valueAt } from "./cubics.js";
+import { countUpTo, distinct, once, recurring } from "./arrays.js";
+import { joined, valueAt } from "./cubics.js";
 import {
   Loop, bottomPosition, deadCentres, strokeOf, throwAngles, topPosition,
 } from "./geometry.js";
@@ -235,19 +235,17 @@ function netOf(one, other, share) {
   let common = turns[0];
   while (common % turns[1]) common += turns[0];
   const last = first + common * TURN;
-  const marks = [one, other].flatMap((cycle) =>
-    knotsOver(cycle, first, last - first).map((ahead) => first + ahead));
-  const knots = distinct([first, ...marks.filter((mark) => mark < last - KNOT), last], KNOT);
+  const marks = [one, other].flatMap((cycle) => knotsBetween(cycle, first, last));
+  const knots = distinct([...marks.filter((mark) => mark < last - KNOT), last], KNOT);
   const { coefficients: less } = cycleOn(other, knots);
   const { coefficients: of } = cycleOn(one, knots);
   return { knots, coefficients: of.map((c, k) => c - share * less[k]) };
 }
 
 function knotsBetween(cycle, low, high) {
-  const period = cycle.knots[cycle.knots.length - 1] - cycle.knots[0];
-  const inside = knotsOver(cycle, low, period).map((each) => low + each);
-  const kept = inside.filter((each) => each > low && each < high);
-  return [low, ...distinct(kept, 0), high];
+  const { knots } = cycle;
+  const all = recurring(knots.slice(1), knots.at(-1) - knots[0], low, high);
+  return [low, ...distinct(all.filter((each) => each > low && each < high), 0), high];
 }
 
 /** A cycle with other knots, between each two of which lies one piece. */

@@ -10,9 +10,7 @@
 export class Loop {
   constructor(shape) {
     const { radius, length, offset } = shape;
-    this.radius = radius;
-    this.length = length;
-    this.offset = offset;
+    Object.assign(this, { radius, length, offset });
     this.spare = Math.max(length - radius - Math.abs(offset), 0);
     this.phi = NaN;
     this.sinPhi = this.cosPhi = this.sinBeta = this.cosBeta = 0.5;

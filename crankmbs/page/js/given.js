@@ -5,12 +5,10 @@ export function valuesOf(value, seen = []) {
   if (Array.isArray(value)) return value.map((each) => valuesOf(each, seen));
   if (value === null || typeof value !== "object") return value;
   if ("again" in value) return seen[value.again];
-  if ("f64" in value) return seen[seen.push(doubles(value.f64)) - 1];
+  if ("f64" in value) {
+    const bytes = Uint8Array.from(atob(value.f64), (letter) => letter.charCodeAt(0));
+    return seen[seen.push(new Float64Array(bytes.buffer)) - 1];
+  }
   return Object.fromEntries(
     Object.entries(value).map(([key, each]) => [key, valuesOf(each, seen)]));
-}
-
-function doubles(text) {
-  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-  return new Float64Array(bytes.buffer);
 }

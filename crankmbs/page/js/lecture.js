@@ -63,12 +63,10 @@ export function lecturedAt(train, lecture, sample, k = null) {
   if (k !== null) return { cylinders };
   const { theta, omega, alpha } = sample;
   const { crank } = train;
-  let [x, y] = inertiaAtThrow(crank.mass, crank.center_of_mass, theta, omega, alpha);
-  cylinders.forEach((found, n) => {
-    const { bank } = train.cylinders[n];
-    const pull = turnedBy(bank, found["crank pin force x"], found["crank pin force y"]);
-    [x, y] = [x + pull[0], y + pull[1]];
-  });
+  const pulls = cylinders.map((found, n) =>
+    turnedBy(train.cylinders[n].bank, found["crank pin force x"], found["crank pin force y"]));
+  const own = inertiaAtThrow(crank.mass, crank.center_of_mass, theta, omega, alpha);
+  const [x, y] = own.map((part, axis) => pulls.reduce((sum, pull) => sum + pull[axis], part));
   return { "main bearing force x": x, "main bearing force y": y, cylinders };
 }
 

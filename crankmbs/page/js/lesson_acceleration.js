@@ -10,8 +10,29 @@ export function start() {
   return begun({ motion: MOTION, valley: VALLEY, fork: FORK });
 }
 
+/** Velocity and acceleration of the piston, without units, and of two harmonics. */
 const MOTION = {
-  shapes: (cycle) => [velocity(cycle), acceleration(cycle)],
+  shapes: (cycle) => {
+    const { radius: r } = cycle.train.shape;
+    const ratio = ratioOf(cycle);
+    const over = (title, range, of, harmonics) => overAngle(cycle, {
+      title,
+      unit: "",
+      curves: [
+        { name: "piston", of },
+        { name: "two harmonics", style: "exact", of: (v) => harmonics(v.crank_angle) },
+      ],
+      holds: { y: range },
+    });
+    return [
+      over("velocity over rω", [-1.2, 1.2],
+        (v) => v.cylinders[0].piston_velocity / (r * v.crank_speed),
+        (phi) => Math.sin(phi) + 0.5 * ratio * Math.sin(2 * phi)),
+      over("acceleration over rω²", [-1.1, 1.6],
+        (v) => accelerationIn(v, r),
+        (phi) => Math.cos(phi) + ratio * Math.cos(2 * phi)),
+    ];
+  },
 };
 
 const VALLEY = {
@@ -47,33 +68,9 @@ function third(phi, ratio) {
   return -s + ratio * (slope / root ** 3 + (3 * ratio ** 2 * u * inner) / root ** 5);
 }
 
-function velocity(cycle) {
-  const { radius: r } = cycle.train.shape;
-  const ratio = ratioOf(cycle);
-  const curves = [
-    { name: "piston", of: (v) => v.cylinders[0].piston_velocity / (r * v.crank_speed) },
-    {
-      name: "two harmonics",
-      style: "exact",
-      of: ({ crank_angle: phi }) => Math.sin(phi) + 0.5 * ratio * Math.sin(2 * phi),
-    },
-  ];
-  const holds = { y: [-1.2, 1.2] };
-  return overAngle(cycle, { title: "velocity over rω", unit: "", curves, holds });
-}
-
-function acceleration(cycle, about = { holds: { y: [-1.1, 1.6] } }) {
-  const { radius: r } = cycle.train.shape;
-  const ratio = ratioOf(cycle);
-  const curves = [
-    { name: "piston", of: (v) => v.cylinders[0].piston_acceleration / (r * v.crank_speed ** 2) },
-    {
-      name: "two harmonics",
-      style: "exact",
-      of: ({ crank_angle: phi }) => Math.cos(phi) + ratio * Math.cos(2 * phi),
-    },
-  ];
-  return overAngle(cycle, { title: "acceleration over rω²", unit: "", curves, ...about });
+/** The acceleration of a piston over that of the crank pin. */
+function accelerationIn(v, r) {
+  return v.cylinders[0].piston_acceleration / (r * v.crank_speed ** 2);
 }
 
 /** The acceleration near bottom dead centre, enlarged, as a diagram over the angle. */
@@ -81,10 +78,7 @@ function valley(cycle) {
   const { radius: r } = cycle.train.shape;
   const ratio = ratioOf(cycle);
   const angles = spread(125, 235, 110);
-  const of = (theta) => {
-    const v = cycle.at(theta);
-    return v.cylinders[0].piston_acceleration / (r * v.crank_speed ** 2);
-  };
+  const of = (theta) => accelerationIn(cycle.at(theta), r);
   const bottom = of(Math.PI);
   const scaled = (theta) => of(theta) - bottom;
   const truncated = (theta) => Math.cos(theta) + ratio * Math.cos(2 * theta) + 1 - ratio;

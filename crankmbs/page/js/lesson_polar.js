@@ -1,10 +1,10 @@
 /** Reading a bearing polar: every point is a force, its direction and its size. */
-import { KN, readable } from "./format.js";
+import { DEGREE, KN, readable } from "./format.js";
 import { begun } from "./lesson.js";
 import { drawn } from "./quantities.js";
 import { diagram, overAngle } from "./shapes.js";
 
-const TEN = Math.PI / 18;
+const TEN = 10 * DEGREE;
 const DIRECTIONS = 180; // at which the load of the pin's surface is looked at
 const WIDE = Math.PI / 3; // rad to either side: how far a load presses on the surface
 
@@ -19,20 +19,14 @@ const BEARING = {
     const over = overAngle(cycle, { title: "size of the force", unit: "kN", curves });
     return [run("main bearing, polar", cycle), over];
   },
-  says: (cycle) => {
-    const most = largest(cycle, "main bearing", (v) =>
-      [v.main_bearing_force_x, v.main_bearing_force_y]);
-    return { peak: `${readable(most.size / KN, 2)} kN`, angle: `${readable(most.degrees, 0)}°` };
-  },
+  says: (cycle) => largest(cycle, "main bearing", (v) =>
+    [v.main_bearing_force_x, v.main_bearing_force_y]),
 };
 
 const PIN = {
   shapes: (cycle) => [run("crank pin, polar", cycle)],
-  says: (cycle) => {
-    const most = largest(cycle, "crank pin", (v) =>
-      [v.cylinders[0].crank_pin_force_x, v.cylinders[0].crank_pin_force_y]);
-    return { peak: `${readable(most.size / KN, 2)} kN`, angle: `${readable(most.degrees, 0)}°` };
-  },
+  says: (cycle) => largest(cycle, "crank pin", (v) =>
+    [v.cylinders[0].crank_pin_force_x, v.cylinders[0].crank_pin_force_y]),
 };
 
 const TURNING = {
@@ -59,7 +53,7 @@ const TURNING = {
   says: (cycle) => {
     const { phase } = cycle.train.cylinders[0];
     const { angle } = leastLoaded(cycle.samples.map((v) => onPin(v, phase)));
-    return { hole: `${readable((angle * 180) / Math.PI, 0)}°` };
+    return { hole: `${readable(angle / DEGREE, 0)}°` };
   },
 };
 
@@ -79,14 +73,13 @@ function dots({ angles }, x, y) {
   return { name: "every 10°", style: "dots", x: gaps(x), y: gaps(y) };
 }
 
-/** The largest force of a cycle in a joint, and at which crank angle; in the quick pass that of the
- * samples. */
-function largest({ samples, angles, measures }, joint, of) {
-  const found = measures?.joints.find((each) => each.joint === joint);
-  if (found) return { size: found.peak, degrees: (found.crank_angle * 180) / Math.PI };
-  const sizes = samples.map((v) => Math.hypot(...of(v)));
-  const n = sizes.reduce((best, size, k) => (size > sizes[best] ? k : best), 0);
-  return { size: sizes[n], degrees: (angles[n] * 180) / Math.PI };
+/** In words the largest force of a cycle in a joint, and at which crank angle; in the quick pass
+ * that of the samples. */
+function largest({ samples, measures }, joint, of) {
+  const { peak, crank_angle: theta } = measures?.joints.find((each) => each.joint === joint) ??
+    samples.map((v) => ({ peak: Math.hypot(...of(v)), crank_angle: v.crank_angle }))
+      .reduce((best, each) => (each.peak > best.peak ? each : best));
+  return { peak: `${readable(peak / KN, 2)} kN`, angle: `${readable(theta / DEGREE, 0)}°` };
 }
 
 /** The force of the rod on the pin [N]: outwards along the crank, and across it. */

@@ -59,15 +59,11 @@ export function measuresOf(motion, rule, span) {
  * of the crank ends, [W]. */
 function indicated({ pressure, crank_end: ends }, powers) {
   if (!pressure.length) return { indicated_power: null };
-  const sum = (each) => each.reduce((total, one) => total + one, 0);
-  const all = sum(powers.slice(0, pressure.length));
-  if (!ends.length) return { indicated_power: all };
-  const below = sum(powers.slice(pressure.length));
-  return {
-    indicated_power: all,
-    indicated_power_head_end: all - below,
-    indicated_power_crank_end: below,
-  };
+  const count = pressure.length;
+  const [all, below] = [powers.slice(0, count), powers.slice(count)].map((each) =>
+    each.reduce((total, one) => total + one, 0));
+  const both = { indicated_power_head_end: all - below, indicated_power_crank_end: below };
+  return { indicated_power: all, ...(ends.length ? both : {}) };
 }
 
 /** Of indicated power I and friction's R: (I - R) / I of an engine, I / (I - R) of a driven one. */
@@ -80,13 +76,10 @@ function efficiency(gained, rubbed) {
 /** What has a peak: every joint's force, the speed and the negative speed. */
 function placesOf({ cylinders }) {
   const bearing = (v) => Math.hypot(v.main_bearing_force_x, v.main_bearing_force_y);
-  const places = [{ joint: "main bearing", cylinder: null, size: bearing }];
-  for (const [joint, size] of Object.entries(JOINTS)) {
-    cylinders.forEach((_, k) => {
-      places.push({ joint, cylinder: k + 1, size: (v) => size(v.cylinders[k]) });
-    });
-  }
-  return [...places, { size: (v) => v.crank_speed }, { size: (v) => -v.crank_speed }];
+  const main = { joint: "main bearing", cylinder: null, size: bearing };
+  const places = Object.entries(JOINTS).flatMap(([joint, size]) => cylinders.map((_, k) =>
+    ({ joint, cylinder: k + 1, size: (v) => size(v.cylinders[k]) })));
+  return [main, ...places, { size: (v) => v.crank_speed }, { size: (v) => -v.crank_speed }];
 }
 
 /** The sizes of all places, the power from outside, of friction and of the forces on the pistons,
@@ -119,13 +112,8 @@ function panelsOf(motion, rule, { from: first, to: last }, row) {
 
 /** Integrals over time of everything in the rows. */
 function integrals(panels, rule) {
-  const totals = panels[0].rows[0].map(() => 0);
-  for (const { rows, spent } of panels) {
-    rows.forEach((row, i) => row.forEach((value, q) => {
-      totals[q] += rule.weights[i] * spent[i] * value;
-    }));
-  }
-  return totals;
+  return panels[0].rows[0].map((_, q) => panels.reduce((total, { rows, spent }) =>
+    rows.reduce((sum, row, i) => sum + rule.weights[i] * spent[i] * row[q], total), 0));
 }
 
 /** The largest value of a place, number q in the rows, and the crank angle where it is. */
@@ -144,21 +132,19 @@ function highest(motion, panels, { size }, q) {
 
 /** The same in a panel in which it rises and falls at most once, by the golden section. */
 function highestIn(valueAt, { from, to }) {
+  const placed = (theta) => [theta, valueAt(theta)];
   let [low, high] = [from, to];
-  let [a, b] = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
-  let [atA, atB] = [valueAt(a), valueAt(b)];
+  let [a, b] = [placed(to - GOLDEN * (to - from)), placed(from + GOLDEN * (to - from))];
   for (let n = 0; n < CLOSENESS; n++) {
-    if (atA > atB) {
-      [high, b, atB] = [b, a, atA];
-      a = high - GOLDEN * (high - low);
-      atA = valueAt(a);
+    if (a[1] > b[1]) {
+      [high, b] = [b[0], a];
+      a = placed(high - GOLDEN * (high - low));
     } else {
-      [low, a, atA] = [a, b, atB];
-      b = low + GOLDEN * (high - low);
-      atB = valueAt(b);
+      [low, a] = [a[0], b];
+      b = placed(low + GOLDEN * (high - low));
     }
   }
-  const ends = [[from, valueAt(from)], [to, valueAt(to)], [a, atA], [b, atB]];
+  const ends = [placed(from), placed(to), a, b];
   const [crank_angle, peak] = ends.reduce((best, each) => (each[1] > best[1] ? each : best));
   return { peak, crank_angle };
 }

@@ -6,7 +6,7 @@
  * speed the motion lands on the kink and goes on from there in a new cell.
  */
 import { AffineCells, areAffine } from "./affine.js";
-import { countUpTo, rootIn } from "./arrays.js";
+import { Sum, countUpTo, rootIn, wrapped } from "./arrays.js";
 import { Stepper } from "./cell.js";
 import { Firing } from "./fuel.js";
 import { branchAt, firstPhases, laterPhases, torqueOf } from "./loads.js";
@@ -35,8 +35,7 @@ export class Travel {
     this.atNodes = { first: Infinity }; // torque and slowness of as many cells as a period has
     this.stepper = new Stepper(grid.rule);
     this.factor = 1;
-    this.lost = 0; // of the energy and the time by rounding
-    this.late = 0;
+    [this.energies, this.times] = [new Sum(this.energy), new Sum(this.time)];
     this.stuck = 0;
     this.ending = null;
     if (this.enter(omega)) this.go();
@@ -60,14 +59,10 @@ export class Travel {
     const { edges } = this.grid;
     const n = edges.length - 1;
     const period = edges[n];
-    let turn = Math.floor((this.theta + this.sense * SLIVER) / period);
+    const turn = Math.floor((this.theta + this.sense * SLIVER) / period);
     let k = countUpTo(edges, this.theta + this.sense * SLIVER - turn * period) - 1;
-    if (k === n) [turn, k] = [turn + 1, 0];
-    while (this.ending === null) {
-      this.toEdge(turn, k);
-      k += this.sense;
-      if (k === n) [turn, k] = [turn + 1, 0];
-      if (k < 0) [turn, k] = [turn - 1, n - 1];
+    for (; this.ending === null; k += this.sense) {
+      this.toEdge(turn + Math.floor(k / n), wrapped(k, n));
     }
   }
 
@@ -132,7 +127,7 @@ export class Travel {
   }
 
   /** Add a cell, of which torque and slowness are in their room, and go on to its end. */
-  accept(target, number, { gained: more, spent: longer, growth }) {
+  accept(target, number, { gained, spent, growth }) {
     const { theta, energy, time, sense, branch, phases, firing: { shares } } = this;
     const { torque, slowness, first } = this.atNodes;
     this.path.add({
@@ -140,12 +135,10 @@ export class Travel {
       branch, phases, shares, number, torque, slowness, first,
     });
     this.atNodes.first += this.grid.rule.nodes.length;
-    const gained = more - this.lost;
-    this.energy = energy + gained;
-    this.lost = this.energy - energy - gained;
-    const spent = longer - this.late;
-    this.time = time + spent;
-    this.late = this.time - time - spent;
+    this.energies.add(gained);
+    this.times.add(spent);
+    this.energy = this.energies.value;
+    this.time = this.times.value;
     this.factor *= 1 + growth;
     this.theta = target;
     this.stuck = 0;
@@ -167,18 +160,18 @@ export class Travel {
     const timely = time + Math.abs(width) * stepper.spent >= branch.tEnd;
     const met = (limit) => Number.isFinite(limit) && limit * sense > 0;
     if (!timely && !met(branch.low) && !met(branch.high)) return null;
-    const exits = [];
+    let first = null;
     if (timely) {
       const late = (x) => time + Math.abs(width) * stepper.spentTo(x) - branch.tEnd;
-      exits.push({ x: rootIn(late, 0, 1), time: branch.tEnd, omega: null });
+      first = { x: rootIn(late, 0, 1), time: branch.tEnd, omega: null };
     }
     for (const [limit, side] of [[branch.low, -1], [branch.high, 1]]) {
-      if (!met(limit)) continue;
+      if (!met(limit) || !stepper.mayLeave(limit, sense)) continue;
       const beyond = (x) => side * (this.speedIn(width, x) - limit);
-      const x = firstAbove(beyond, stepper.places, stepper.mayLeave(limit, sense));
-      if (x !== null) exits.push({ x, time: null, omega: limit });
+      const x = firstAbove(beyond, stepper.places);
+      if (x !== null && !(first?.x <= x)) first = { x, time: null, omega: limit };
     }
-    return exits.reduce((first, one) => (first === null || one.x < first.x ? one : first), null);
+    return first;
   }
 
   /** Speed [rad/s] at a place of the solved cell. */
@@ -225,7 +218,7 @@ export class Travel {
     const { inertia } = reduceAt(this.train, this.theta);
     if (time !== null) this.time = time;
     if (omega !== null) this.energy = 0.5 * inertia * omega * omega;
-    this.lost = this.late = 0;
+    [this.energies, this.times] = [new Sum(this.energy), new Sum(this.time)];
     if (time !== null && time >= this.stop.time) {
       this.ending = "complete";
       return;
@@ -251,10 +244,9 @@ export class Travel {
   }
 }
 
-/** The first place, from 0 to 1, where a function rises above 0: between neighbouring places, or,
- * where it comes near, between more of them. */
-function firstAbove(f, places, near) {
-  if (!near) return null;
+/** The first place, from 0 to 1, where a function rises above 0: between neighbouring places, or
+ * between more of them. */
+function firstAbove(f, places) {
   let before = 0;
   for (let k = 1; k < places.length; k++) {
     for (let part = 1; part <= GRAZES; part++) {

@@ -1,10 +1,11 @@
 /** The page: knobs, mechanism and plots of one scene, and what happens between them. */
 import {
-  fillChoices, listenToChoices, offerSlower, say, seenPlots, showChoices, showWords, unfold,
+  fillChoices, listenToChoices, say, seenPlots, showChoices, showWords, unfold,
 } from "./controls.js";
 import { DEGREE } from "./format.js";
 import { valuesOf } from "./given.js";
 import { enlarge, find, listenToKeys } from "./keys.js";
+import { Player } from "./player.js";
 import { Plot } from "./plot.js";
 import { drawn } from "./quantities.js";
 import { refusalOf } from "./refused.js";
@@ -129,7 +130,8 @@ class Page extends Shown {
     const unused = cycle.prescribed && given.scene.motion === null ? ["flywheel", "load"] : [];
     this.knobs.disable(unused);
     const { player } = this;
-    player.slower ??= offerSlower(cycle, (slower) => (player.slower = slower));
+    const chosen = (slower) => (player.slower = slower);
+    player.slower ??= Player.offer(find("slower"), chosen, Player.fitting(cycle.duration));
     showWords(given, cycle, this.error);
     this.seek(this.theta ?? tellingPose(cycle));
   }

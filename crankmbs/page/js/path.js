@@ -10,9 +10,7 @@ const SAME = 8 * Number.EPSILON; // of a crank angle: rounding, as in crankmbs.m
  * slowness at its nodes stand in their arrays from number `first` on. */
 export class Path {
   constructor(rule) {
-    this.rule = rule;
-    this.cells = [];
-    this.starts = [];
+    Object.assign(this, { rule, cells: [], starts: [] });
   }
 
   add(cell) {

@@ -8,9 +8,7 @@ export class Player {
   /** on : { cycle() the cycle shown, move(theta), button that says by two words whether it plays,
    * still and moving }, and finish() of what does not begin again */
   constructor(on) {
-    this.on = on;
-    this.playing = false;
-    this.slower = null;
+    Object.assign(this, { on, playing: false, slower: null });
     this.turn = this.turn.bind(this);
   }
 
@@ -20,13 +18,16 @@ export class Player {
     return factors.reduce((best, each) => (far(each) < far(best) ? each : best));
   }
 
-  /** Fill a select with factors of slow motion; chosen(factor) when one is. */
-  static offer(select, chosen, factors = SLOWER) {
+  /** Fill a select with factors of slow motion, of which it begins with `first`, which is given
+   * back; chosen(factor) when another is. */
+  static offer(select, chosen, first, factors = SLOWER) {
     const named = (rate) => (rate > 1 ? `${rate}× slower` : `${Math.round(1 / rate)}× faster`);
     for (const rate of factors) {
       select.append(new Option(rate === 1 ? "real time" : named(rate), String(rate)));
     }
+    select.value = String(first);
     select.addEventListener("change", () => chosen(Number(select.value)));
+    return first;
   }
 
   play(wanted, theta) {

@@ -4,27 +4,22 @@
  * be dragged, and what lies under the pointer is read out.
  */
 import { drawAxes, drawMarks, frameOf, valueUnder } from "./axis.js";
-import { decimalsFor, padded, readable } from "./format.js";
+import { DEGREE, decimalsFor, padded, readable } from "./format.js";
 import { rangeOf, sizeOf, valueAlong } from "./shapes.js";
 import { slid } from "./slide.js";
-import { Pen, add, build, lineOf, listed, set, watched, write } from "./svg.js";
+import { Pen, add, lineOf, listed, set, watched, write } from "./svg.js";
 
 const STRIP = 0.3; // of the height, for the differences
 const NOTHING = 1e-9; // of the largest value: a difference that is none
+const NONE = "no difference but rounding";
 
 export class Plot {
   /** root : a figure with .legend and svg; onMove : of the crank angle [deg] that is asked for, or
    * null where a hand lets go */
   constructor(root, onMove) {
-    this.root = root;
-    this.svg = root.querySelector("svg");
-    this.legend = root.querySelector(".legend");
-    this.onMove = onMove;
-    this.shape = null;
-    this.ghost = null;
+    Object.assign(this, { root, onMove, shape: null, ghost: null, hover: null, size: null });
+    [this.svg, this.legend] = ["svg", ".legend"].map((part) => root.querySelector(part));
     this.degrees = 0;
-    this.hover = null;
-    this.size = null;
     this.axes = { upper: add(this.svg, "g"), lower: add(this.svg, "g") };
     this.lines = add(this.svg, "g", { transform: "scale(0.1)" });
     this.cursor = add(this.svg, "g", { class: "cursor" });
@@ -48,10 +43,13 @@ export class Plot {
    * values in the range of its axes, `holds` and `holdsBelow`, and its curves have a style. The
    * cursor stands where it was until it is placed. */
   draw(shape, marks) {
-    this.shape = shape;
-    this.seen = visible(shape);
-    this.most = sizeOf([shape.curves[0].y, shape.holds?.y ?? []]);
-    this.marks = marks;
+    Object.assign(this, { shape, marks });
+    const most = sizeOf([shape.curves[0].y, shape.holds?.y ?? []]);
+    this.above = shape.curves.map((each, n) => ({ ...each, style: styleOf(each, n), most }));
+    const size = sizeOf(shape.curves.map(({ y }) => y));
+    this.below = shape.differences
+      .map((each, n) => ({ ...each, style: `difference${n}`, most: sizeOf([each.y]) }))
+      .filter((each) => each.most > NOTHING * size);
     this.root.classList.toggle("diagram", isDiagram(shape));
     this.root.classList.toggle("square", Boolean(shape.equal));
     this.root.classList.toggle("apart", shape.differences.length > 0);
@@ -61,7 +59,9 @@ export class Plot {
 
   /** Keep the curve of the run as it is, or let it go. */
   pin() {
-    this.ghost = this.ghost ? null : { title: this.shape.title, curve: this.shape.curves[0] };
+    const [{ x, y }] = this.above;
+    const { title } = this.shape;
+    this.ghost = this.ghost ? null : { title, x, y, name: "pinned", style: "ghost" };
     this.redraw();
     return this.ghost !== null;
   }
@@ -73,31 +73,30 @@ export class Plot {
 
   /** Axes and curves. */
   trace() {
-    const { svg, shape, size } = this;
+    const { svg, shape, size, above, below, ghost } = this;
     if (!shape || !size || size.width < 50 || size.height < 50) return;
     const { width, height, type } = size;
     set(svg, { viewBox: `0 0 ${width} ${height}`, "aria-label": this.described() });
     this.type = type;
-    const { seen } = this;
     const strip = shape.differences.length > 0;
     const overAngle = !isDiagram(shape);
     const foot = height - (overAngle ? 1.5 : 2.6) * type;
     const split = strip ? foot - STRIP * height : foot;
     const box = { left: 4.4 * type, right: width - 1.7 * type, top: 1.3 * type };
     const top = { ...box, bottom: strip ? split - 1.5 * type : foot };
-    const curves = this.ghost ? [...shape.curves, this.ghost.curve] : shape.curves;
+    const curves = ghost ? [ghost, ...above] : above;
     const about = { type, shape, overAngle, left: box.left };
     this.upper = frameOf(top, curves, { ...about, holds: shape.holds });
     this.draws("upper", this.upper, { ...about, last: !strip, name: nameOf(shape) });
-    const below = { ...box, top: split, bottom: foot };
-    this.lower = strip ? frameOf(below, seen, { ...about, holds: shape.holdsBelow }) : null;
+    const low = { ...box, top: split, bottom: foot };
+    this.lower = strip ? frameOf(low, below, { ...about, holds: { y: shape.holdsBelow } }) : null;
     this.draws("lower", this.lower, { ...about, last: true, name: "difference" });
     const pen = new Pen(this.lines);
-    const line = (frame, curve, style) =>
-      pen.add("path", { d: lineOf(curve, frame), class: `curve ${style}` });
-    if (this.ghost) line(this.upper, this.ghost.curve, "ghost");
-    shape.curves.forEach((curve, n) => line(this.upper, curve, styleOf(curve, n)));
-    if (strip) for (const each of seen) line(this.lower, each, each.style);
+    for (const [frame, all] of [[this.upper, curves], [this.lower, below]]) {
+      for (const each of all) {
+        pen.add("path", { d: lineOf(each, frame), class: `curve ${each.style}` });
+      }
+    }
     pen.end();
   }
 
@@ -120,7 +119,7 @@ export class Plot {
     const pen = new Pen(cursor);
     const at = this.hover ?? degrees;
     if (isDiagram(shape)) {
-      const [x, y] = shape.of((at * Math.PI) / 180);
+      const [x, y] = shape.of(at * DEGREE);
       const end = { x2: upper.right(x), y2: upper.up(y) };
       if (shape.equal) pen.add("line", { x1: upper.right(0), y1: upper.up(0), ...end });
       pen.add("circle", { cx: end.x2, cy: end.y2, r: 0.35 * this.type });
@@ -128,7 +127,7 @@ export class Plot {
       const x = upper.right(degrees);
       const bottom = (lower ?? upper).box.bottom;
       pen.add("line", { x1: x, x2: x, y1: upper.box.top, y2: bottom });
-      const value = shape.of((degrees * Math.PI) / 180);
+      const value = shape.of(degrees * DEGREE);
       pen.add("circle", { cx: x, cy: upper.up(value), r: 0.3 * this.type });
       if (this.hover !== null) {
         const h = upper.right(at);
@@ -141,37 +140,25 @@ export class Plot {
 
   /** Write the values at an angle [deg] into the legend. */
   read(degrees) {
-    const { shape, legend } = this;
-    const entries = isDiagram(shape)
-      ? shape.curves.map((curve, n) => [curve.name, styleOf(curve, n), ""])
-      : this.values(degrees);
-    if (this.ghost) entries.push(["pinned", "ghost", ""]);
+    const { shape, legend, above, below, ghost } = this;
+    const [run] = above;
+    const valued = (each) => {
+      const value = each === run ? shape.of(degrees * DEGREE) : between(each, degrees);
+      return padded(value, decimalsFor(each.most), each.most);
+    };
+    const entries = [...above, ...below].map((each) =>
+      [each.name, each.style, isDiagram(shape) ? "" : valued(each)]);
+    if (shape.differences.length && !below.length) entries.push([NONE, "", ""]);
+    if (ghost) entries.push([ghost.name, ghost.style, ""]);
     const hovers = this.hover !== null && !isDiagram(shape);
-    const where = hovers ? [[`at ${readable(degrees, 0)}°`, "", ""]] : [];
-    const all = [...where, ...entries];
-    const items = listed(legend, all.length, () => entry(legend));
-    all.forEach(([name, style, value], n) => {
+    if (hovers) entries.unshift([`at ${readable(degrees, 0)}°`, "", ""]);
+    const items = listed(legend, entries.length, ["span", "entry"], ["i", "span", "b"]);
+    entries.forEach(([name, style, value], n) => {
       const [swatch, called, number] = items[n].children;
       set(swatch, { class: style ? `swatch ${style}` : "none" });
       write(called, value ? `${name} ` : name);
       write(number, value);
     });
-  }
-
-  /** Name, style and value of every curve and difference at an angle [deg]. */
-  values(degrees) {
-    const { curves, differences } = this.shape;
-    const run = this.shape.of((degrees * Math.PI) / 180);
-    const styled = curves.map((curve, n) => {
-      const value = n === 0 ? run : between(curve, degrees);
-      return [curve.name, styleOf(curve, n), padded(value, decimalsFor(this.most), this.most)];
-    });
-    if (!differences.length) return styled;
-    const seen = this.seen.map((each) => {
-      const value = between(each, degrees);
-      return [each.name, each.style, padded(value, decimalsFor(each.size), each.size)];
-    });
-    return seen.length ? [...styled, ...seen] : [...styled, ["no difference but rounding", "", ""]];
   }
 
   /** Whether a curve over the crank angle is drawn. */
@@ -185,25 +172,10 @@ export class Plot {
   }
 
   described() {
-    const { shape } = this;
-    const ys = shape.curves[0].y;
-    const decimals = decimalsFor(this.most);
-    const [low, high] = rangeOf([ys]).map((y) => readable(y, decimals));
+    const { shape, above: [{ y, most }] } = this;
+    const [low, high] = rangeOf([y]).map((each) => readable(each, decimalsFor(most)));
     return `${shape.title}: ${low} to ${high} ${shape.up.unit}, over the ${shape.right.text}`;
   }
-}
-
-/** The differences that are more than rounding, each with its style and size. */
-function visible({ curves, differences }) {
-  const size = sizeOf(curves.map(({ y }) => y));
-  const sized = differences.map((each, n) =>
-    ({ ...each, style: `difference${n}`, size: sizeOf([each.y]) }));
-  return sized.filter((each) => each.size > NOTHING * size);
-}
-
-function entry(legend) {
-  const item = build(legend, "span", "entry");
-  for (const tag of ["i", "span", "b"]) build(item, tag);
 }
 
 function isDiagram(shape) {

@@ -10,12 +10,13 @@ const LECTURE = "S1 (motion and forces truncated)";
 export const CURVES = ["simulated", "untruncated", "lecture"];
 
 /** Quantities by name: unit, its SI value, `of` a sample and a cylinder; `said` by the formulas;
- * cylinder : whether the variables of the motion and one cylinder are enough. */
+ * cylinder : whether the variables of the motion and one cylinder are enough; run : what of a cycle
+ * has it at the samples. */
 const QUANTITIES = {
   "crank speed": {
-    unit: "rpm", si: RPM, cylinder: true, of: (v) => v.crank_speed, even: (c) => c.mean,
+    unit: "rpm", si: RPM, run: "speeds", of: (v) => v.crank_speed, even: (c) => c.mean,
   },
-  "crank ahead of the mean": { unit: "°", si: DEGREE, ahead: true, even: () => 0 },
+  "crank ahead of the mean": { unit: "°", si: DEGREE, run: "leads", even: () => 0 },
   "turning moment": {
     unit: "N m",
     si: 1,
@@ -69,13 +70,13 @@ const DIAGRAMS = {
 };
 
 function own(unit, si, name, said) {
-  const found = { unit, si, cylinder: true, of: (v, k) => v.cylinders[k][name] };
-  return said ? { ...found, said: (f, k) => f.cylinders[k][said] } : found;
+  const of = (key) => key && ((v, k) => v.cylinders[k][key]);
+  return { unit, si, cylinder: true, of: of(name), said: of(said) };
 }
 
 function whole(name, said) {
-  const found = { unit: "N", si: 1, of: (v) => v[name] };
-  return said ? { ...found, said: (f) => f[said] } : found;
+  const of = (key) => key && ((v) => v[key]);
+  return { unit: "N", si: 1, of: of(name), said: of(said) };
 }
 
 function polar(name, of, said) {
@@ -122,29 +123,23 @@ function curvesOver(name, cycle, k) {
     unit,
     curves,
     apart: pairs.map((next, n) => [`${curves[n].name} − ${next.name}`, n, n + 1]),
-    of: (theta) => read(quantity, cycle, theta, k) / si,
+    of: (theta) => (quantity.of ? quantity.of(cycle.at(theta), k) : cycle.leadAt(theta)) / si,
   });
 }
 
-/** One value of the run at an angle. */
-function read(quantity, cycle, theta, k) {
-  return quantity.ahead ? cycle.leadAt(theta) : quantity.of(cycle.at(theta), k);
-}
-
 function curvesOf(quantity, cycle, k) {
-  const run = quantity.ahead
-    ? cycle.leads
-    : cycle.samplesOf(quantity.cylinder ? k : null).map((v) => quantity.of(v, k));
+  const run = cycle[quantity.run] ??
+    cycle.samplesOf(quantity.cylinder ? k : null).map((v) => quantity.of(v, k));
   const found = [{ name: CURVES[0], y: run }];
   if (quantity.even) found.push({ name: "constant speed", y: run.map(() => quantity.even(cycle)) });
   if (!quantity.said) return found;
   const datum = quantity.datum ? quantity.datum(cycle.train.gears[k].shape) : 0;
-  [EXACT, LECTURE].forEach((lecture, n) => {
-    const only = quantity.cylinder ? k : null;
-    const y = cycle.lectured(lecture, only).map((each) => quantity.said(each, k) - datum);
-    found.push({ name: CURVES[n + 1], y });
-  });
-  return found;
+  const only = quantity.cylinder ? k : null;
+  const said = [EXACT, LECTURE].map((lecture, n) => ({
+    name: CURVES[n + 1],
+    y: cycle.lectured(lecture, only).map((each) => quantity.said(each, k) - datum),
+  }));
+  return [...found, ...said];
 }
 
 function inDiagram(name, cycle, k) {

@@ -17,15 +17,14 @@ const SHOTS = 400;
 const CLOSE = 1e-3; // of the energy: from so near Newton's method takes over from the run itself
 const MOST = 8; // times: how far one step of Newton's method may go
 const FARTHEST = 1e6; // of the energy: with no fixed point below it is taken to grow without bound
-const SPEEDS = 65; // at which the slope of the loads is looked at
 
 /** The settled motion from a start { angle, speed }, over one period of the grid.
  *
  * warm [J] : an energy to begin with, such as that of a motion close by; null: the start's
  *
- * { ending, motion, theta, period, sense, factor, balanced } : ending "complete", "slow", "held",
- * "runs_away", "decays" or "wanders"; motion : { path, time } of the period from theta on; factor :
- * what a period leaves of a disturbance; balanced : whether every speed would do
+ * { train, ending, motion, theta, period, sense, factor, balanced } : ending "complete", "slow",
+ * "held", "runs_away", "decays" or "wanders"; motion : { path, time } of the period from theta on;
+ * factor : what a period leaves of a disturbance; balanced : whether every speed would do
  */
 export function settle(train, grid, start, warm) {
   const sense = start.speed < 0 ? -1 : 1;
@@ -74,8 +73,9 @@ export class Section {
 
   /** What is found: the motion over a period, or none where it ends otherwise. */
   found(ending, motion = null, about = {}) {
-    const { theta, period, sense } = this;
-    return { ending, motion, theta, period, sense, factor: undefined, balanced: false, ...about };
+    const { train, theta, period, sense } = this;
+    const unknown = { factor: undefined, balanced: false };
+    return { train, ending, motion, theta, period, sense, ...unknown, ...about };
   }
 
   inClosedForm(branch, start) {
@@ -114,7 +114,8 @@ export class Section {
   }
 
   byNewton(begin, speed) {
-    const several = this.mayBeSeveral();
+    // where a load rises with the speed there may be several: the run itself tells to which it goes
+    const several = this.train.loads.some(({ over_speed: load }) => load !== null && rises(load));
     let energy = begin;
     let before = { gained: Infinity, moved: Infinity };
     const bracket = { low: 0, high: Infinity };
@@ -157,12 +158,6 @@ export class Section {
     }
     return energy;
   }
-
-  /** Whether a load rises with the speed anywhere, so that the map may give back several energies:
-   * then the run itself tells to which it goes. */
-  mayBeSeveral() {
-    return this.train.loads.some(({ over_speed: load }) => load !== null && rises(load));
-  }
 }
 
 /** The energy to try next: Newton's step, no farther than MOST times; the middle of the bracket
@@ -176,12 +171,10 @@ function nextIn({ low, high }, energy, gained, damping, before) {
   return inside || !closed ? next : 0.5 * (low + high);
 }
 
+/** Whether a load rises with the speed anywhere. */
 function rises({ knots, pieces }) {
   const far = knots.length ? 2 * Math.max(...knots.map(Math.abs)) + 1 : 1;
-  for (let k = 0; k <= SPEEDS; k++) {
-    const omega = far * ((2 * k) / SPEEDS - 1);
-    const piece = 3 * countUpTo(knots, omega);
-    if (pieces[piece + 1] + 2 * pieces[piece + 2] * omega > 0) return true;
-  }
-  return false;
+  const ends = [-far, ...knots, far];
+  const slope = (k, omega) => pieces[3 * k + 1] + 2 * pieces[3 * k + 2] * omega;
+  return ends.slice(1).some((end, k) => Math.max(slope(k, ends[k]), slope(k, end)) > 0);
 }

@@ -4,10 +4,10 @@
  * which the last may be infinite; or { kind: "oscillation", mean, amplitude, order, phase, angle },
  * omega = mean + amplitude cos(order theta + phase); or one "over_angle".
  */
-import { countUpTo, rootOf } from "./arrays.js";
+import { countUpTo, recurring, rootOf } from "./arrays.js";
 
 /** The law as an object with `at(time)` -> [theta, omega, alpha], `timeAt(theta)` and the crank
- * angles at which it bends, `bendsBetween(low, high)`. */
+ * angles at which it bends, `bendsBetween(from, to)`, and others beside. */
 export function speedLaw(law) {
   if (law.kind === "over_angle") return new OverAngle(law);
   return law.kind === "oscillation" ? new Oscillation(law) : new Polynomial(law);
@@ -39,8 +39,7 @@ class Polynomial {
   timeAt(theta) {
     const { knots, cubics, angles } = this;
     const sense = this.at(0)[1] < 0 ? -1 : 1;
-    let k = countUpTo(angles.map((each) => sense * each), sense * theta) - 1;
-    k = Math.max(k, 0);
+    const k = Math.max(countUpTo(angles.map((each) => sense * each), sense * theta) - 1, 0);
     const whole = knots[k + 1] - knots[k];
     const even = Math.abs((theta - angles[k]) / cubics[k][3]); // in an endless piece
     const high = Number.isFinite(whole) ? whole : 2 * (even + 1e-9);
@@ -132,15 +131,10 @@ class OverAngle {
     return this.sense * (this.slowly(theta) - this.begun);
   }
 
-  /** Crank angles between two others at which it bends. */
-  bendsBetween(low, high) {
+  /** Crank angles at which it bends; where they come again, from one to another. */
+  bendsBetween(from, to) {
     const { knots, repeats, period } = this;
-    const turnOf = (theta) => (repeats ? Math.floor((theta - knots[0]) / period) : 0);
-    const found = [];
-    for (let turn = turnOf(low); turn <= turnOf(high); turn++) {
-      for (const knot of knots) found.push(knot + turn * period);
-    }
-    return found.filter((each) => each > low && each < high);
+    return repeats ? recurring(knots.slice(1), period, from, to) : knots;
   }
 
   /** int d theta / |omega| from the first knot on [s]. */

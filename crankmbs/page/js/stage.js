@@ -18,14 +18,13 @@ const SMALL = 0.85; // of the page's type: letters in the drawing
 const FOOT = 1.8; // of the letters' height, below the drawing: the scale of the forces
 const ROW = 1.4; // the same: which cylinder is shown
 const SHORTEST = 0.01; // of the largest force: what has an arrow
+const FEW = 3; // of so many samples one: they tell how large forces and pressure become
 
 export class Stage {
   /** root : its svg; compression : the ratio that the scene has, or null; resized : called when its
    * size has changed */
   constructor(root, compression, resized) {
-    this.root = root;
-    this.compression = compression;
-    this.size = { width: 300, height: 300, type: 16 };
+    Object.assign(this, { root, compression, size: { width: 300, height: 300, type: 16 } });
     watched(root, (size) => {
       this.size = size;
       resized();
@@ -40,17 +39,14 @@ export class Stage {
     this.sizes = proportions(train, ratio, this.compression);
     this.measure(cycle, body, k);
     [this.lean] = onScreen(turnedBy(train.cylinders[k].bank, 1, 0));
-    this.most = Math.max(...cycle.samplesOf(k).map((v) => v.cylinders[k].gas_pressure), 1);
+    const pressures = cycle.samplesOf(k, FEW).map((v) => v.cylinders[k].gas_pressure);
+    this.most = Math.max(...pressures, 1);
     const lead = sizeOf([cycle.leads]);
     this.magnified = lead > 1e-9 ? Math.max(roundBelow(LEAD / lead), 1) : 0;
-    const { rim, ring, bounds, each } = this.sizes;
-    const made = [k, train.cylinders, heavy, this.magnified > 0, ring];
+    const made = [k, train.cylinders, heavy, this.magnified > 0];
     if (!isSame(made, this.made)) this.make(heavy);
-    const places = [bounds, ...each].map(Object.values);
-    const fits = [made, places, this.size, this.magnified, this.letters];
-    if (!isSame(fits, this.fits)) this.fit();
-    [this.made, this.fits] = [made, fits];
-    for (const disc of this.discs) set(disc, { r: rim * UNITS });
+    this.made = made;
+    this.fit();
     this.fitScale();
   }
 
@@ -59,7 +55,7 @@ export class Stage {
     this.forces = BODIES.includes(body) ? forcesOn(body, this.train, k) : [];
     this.letters = Math.max(0, ...this.forces.map(({ name }) => name.length));
     let square = 0;
-    for (const v of this.forces.length ? cycle.samplesOf(body === "crank" ? null : k) : []) {
+    for (const v of this.forces.length ? cycle.samplesOf(body === "crank" ? null : k, FEW) : []) {
       for (const { x, y } of this.forces) square = Math.max(square, x(v) ** 2 + y(v) ** 2);
     }
     this.largest = Math.sqrt(square);
@@ -101,7 +97,8 @@ export class Stage {
   /** The sizes of all that stands still. */
   fit() {
     const { root, sizes, parts, axle, which } = this;
-    const drawn = scaledBox(sizes.bounds);
+    const scaled = Object.entries(sizes.bounds).map(([side, value]) => [side, UNITS * value]);
+    const drawn = Object.fromEntries(scaled);
     const words = { letters: this.letters, type: SMALL * this.size.type, lean: this.lean };
     const rows = (this.letters ? FOOT : 0) + (parts.length > 1 ? ROW : 0);
     const foot = rows * words.type;
@@ -109,17 +106,19 @@ export class Stage {
     const { left, top, width, height, scale } = boxBeside(drawn, size, words);
     const high = height + foot / scale;
     set(root, { viewBox: `${left} ${top} ${width} ${high}` });
-    // lines are about as wide on every screen; a new value would be a new style for every part
-    root.style.setProperty("--px", (1 / scale).toPrecision(2));
+    const px = (1 / scale).toPrecision(2); // lines are about as wide on every screen
+    if (px !== this.px) root.style.setProperty("--px", px); // which is a new style for every part
+    this.px = px;
     this.type = (SMALL * this.size.type) / scale;
     const middle = left + 0.5 * width; // what is wider than the drawing is room beside it
     set(which, { x: middle, y: top + high - 0.4 * this.type, "font-size": this.type });
     const half = (0.5 * this.size.width) / scale;
     const above = top + 0.5 * (high - this.size.height / scale);
-    this.sides = { left: drawn.left, right: drawn.left + drawn.width };
+    this.sides = { ...drawn, right: drawn.left + drawn.width };
     this.edge = { left: middle - half, right: middle + half, top: above };
     parts.forEach((part, k) => this.fitCylinder(part, sizes.each[k]));
     set(axle, { r: 0.13 * sizes.r * UNITS });
+    for (const disc of this.discs) set(disc, { r: sizes.rim * UNITS });
   }
 
   /** Ticks of the ring at mean speed, and its pointer. */
@@ -143,7 +142,7 @@ export class Stage {
     if (!largest) return pen.end();
     const newtons = roundBelow(largest / 2.2);
     const long = this.lengthOf(newtons);
-    const { left, top, height } = scaledBox(this.sizes.bounds);
+    const { left, top, height } = this.sides;
     const size = newtons >= 1000 ? `${general(newtons / 1000)} kN` : `${general(newtons)} N`;
     const text = `${size} (length ∝ √force)`;
     const wide = long + LETTER * type * (text.length + 1);
@@ -293,8 +292,4 @@ export class Stage {
 
 function onScreen([x, y]) {
   return [-y, -x];
-}
-
-function scaledBox({ left, top, width, height }) {
-  return { left: left * UNITS, top: top * UNITS, width: width * UNITS, height: height * UNITS };
 }

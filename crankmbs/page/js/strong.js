@@ -14,11 +14,8 @@ export function strongOf(cycles) {
 
 function atStrongKnots({ knots, coefficients }) {
   const n = knots.length - 1;
-  let [low, high] = [Infinity, -Infinity];
-  for (let k = 3 * n; k < 4 * n; k++) {
-    low = Math.min(low, coefficients[k]);
-    high = Math.max(high, coefficients[k]);
-  }
+  const values = coefficients.subarray(3 * n);
+  const [low, high] = [Math.min(...values), Math.max(...values)];
   const strong = [];
   for (let k = 0, before = n - 1; k < n; before = k++) {
     const x = knots[before + 1] - knots[before];

@@ -16,10 +16,13 @@ export function build(parent, tag, className = "") {
   return parent.appendChild(Object.assign(document.createElement(tag), { className }));
 }
 
-/** So many elements below another, those that are there and others that make() adds. */
-export function listed(parent, count, make) {
+/** So many elements below another, each [tag, class] with the same parts. */
+export function listed(parent, count, made, parts) {
   while (parent.children.length > count) parent.lastChild.remove();
-  while (parent.children.length < count) make();
+  while (parent.children.length < count) {
+    const item = build(parent, ...made);
+    for (const tag of parts) build(item, tag);
+  }
   return parent.children;
 }
 
@@ -58,9 +61,8 @@ export class Pen {
   add(tag, attributes, text = null) {
     let each = this.group.children[this.count++];
     if (each?.tagName !== tag) {
-      const made = document.createElementNS(SPACE, tag);
-      if (each) each.replaceWith(made);
-      else this.group.append(made);
+      const made = add(this.group, tag);
+      each?.replaceWith(made);
       each = made;
     }
     if (text !== null) write(each, text);

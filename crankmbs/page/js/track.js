@@ -11,11 +11,9 @@ export class Track {
       const shape = shapeOf(part);
       return { ...part, shape, loop: new Loop(shape) };
     });
-    this.given = given;
-    this.train = { gears, cylinders };
-    this.begin = given.time[0];
-    this.end = given.time[given.time.length - 1];
-    this.leads = [0]; // no ring turns at a mean speed
+    const [begin, end] = [given.time[0], given.time.at(-1)];
+    // no ring turns at a mean speed
+    Object.assign(this, { given, train: { gears, cylinders }, begin, end, leads: [0] });
     const { pressure_time: times } = given;
     this.samples = Array.from(times.length ? times : [this.begin], (time) => {
       const pressures = this.pressuresAt(time);

@@ -1,5 +1,6 @@
 /** What the page says in words about the motion that it shows. */
-import { RPM, general, readable } from "./format.js";
+import { recurring } from "./arrays.js";
+import { DEGREE, RPM, general, readable } from "./format.js";
 
 /** The numbers of the headline, [name, value] each, those that say most first; what the quick pass
  * does not have stands as ... in its place. */
@@ -54,46 +55,37 @@ export function badgeOf(cycle, endings) {
   const drifts = `${cycle.gain > 0 ? "gains" : "loses"} ${gain} rpm`;
   if (cycle.prescribed) {
     const steady = Math.abs(cycle.drift) < 1e-9 * Math.abs(cycle.mean);
-    if (steady) return said("prescribed speed", true);
-    return said(`prescribed speed: ${drifts} a cycle`, false);
+    if (steady) return { text: "prescribed speed", good: true };
+    return { text: `prescribed speed: ${drifts} a cycle`, good: false };
   }
   if (cycle.scene.freed) {
+    const speed = cycle.motion.balanced
+      ? ": every speed would repeat itself, the mean prescribed is kept"
+      : " at the mean speed prescribed";
     const held = "settled under the constant torque that balances the cycle";
-    return cycle.motion.balanced
-      ? said(`${held}: every speed would repeat itself, the mean prescribed is kept`, true)
-      : said(`${held} at the mean speed prescribed`, true);
+    return { text: `${held}${speed}`, good: true };
   }
   if (cycle.settled && cycle.motion.balanced) {
-    return said("settled at any speed: the mean speed of the start is kept", true);
+    return { text: "settled at any speed: the mean speed of the start is kept", good: true };
   }
   const count = Math.round(Math.abs(cycle.to - cycle.from) / cycle.scene.period);
   if (cycle.settled) {
     const repeats = count > 1 ? `these ${count} cycles repeat` : "every cycle is like this one";
-    return said(`settled motion: ${repeats}`, true);
+    return { text: `settled motion: ${repeats}`, good: true };
   }
   if (cycle.train.fuel?.misfire.some(({ every }) => every)) {
-    return said(`one of several cycles, of which the last ${drifts}; ${endings.uneven}`, false);
+    const text = `one of several cycles, of which the last ${drifts}; ${endings.uneven}`;
+    return { text, good: false };
   }
   const why = cycle.why === null ? "" : `; ${endings[cycle.why]}`;
   const which = cycle.scene.run.settled ? "first" : "last";
-  return said(`not settled: the ${which} cycle ${drifts}${why}`, false);
-}
-
-function said(text, good) {
-  return { text, good };
+  return { text: `not settled: the ${which} cycle ${drifts}${why}`, good: false };
 }
 
 /** The true dead centres of a cylinder within a cycle, { degrees, name }. */
 export function deadCentreMarks(cycle, k, { top, bottom }) {
   const { phase } = cycle.train.cylinders[k];
-  const [low, high] = [Math.min(cycle.from, cycle.to), Math.max(cycle.from, cycle.to)];
-  const found = [];
-  for (const [centre, name] of [[top, "top"], [bottom, "bottom"]]) {
-    const turn = 2 * Math.PI;
-    const first = Math.ceil((low - centre + phase) / turn - 1e-9);
-    for (let n = first; n * turn + centre - phase <= high + 1e-9; n++) {
-      found.push({ degrees: ((n * turn + centre - phase) * 180) / Math.PI, name });
-    }
-  }
-  return found;
+  return [[top, "top"], [bottom, "bottom"]].flatMap(([centre, name]) =>
+    recurring([centre - phase], 2 * Math.PI, cycle.from, cycle.to)
+      .map((theta) => ({ degrees: theta / DEGREE, name })));
 }
