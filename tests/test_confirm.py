@@ -11,6 +11,7 @@ from crankmbs.errors import InputError
 from crankmbs.scene.forces import Spring
 from crankmbs.scene.read import load_scene
 from crankmbs.simulate import simulate
+from validation.random_changes import random_changes
 from validation.random_forces import random_forces
 
 pytestmark = pytest.mark.slow
@@ -59,6 +60,20 @@ def test_forces_from_outside_are_the_run_s_where_the_speed_is_prescribed() -> No
 @pytest.mark.parametrize("seed", [19, 36])
 def test_between_samples_the_run_errs_by_what_its_passes_differ_by(seed: int) -> None:
     assert confirm(simulate(random_forces(seed))).holds
+
+
+def test_a_crank_that_turns_back_is_integrated_from_the_last_decision_on() -> None:
+    result = simulate(random_changes("fuel", 16))  # 800 degrees forwards, then 159 back
+    found = confirm(result)
+    assert found.holds
+    assert found.difference < 1e-6
+    decided = result.events["time"].values[result.events["kind"].values == "fuel"]
+    assert found.window[0] == pytest.approx(decided[-1], rel=1e-9)
+
+
+def test_a_stretch_shorter_than_a_step_is_run_no_further_than_its_end() -> None:
+    """Two rows of the pressure nearly meet: beyond them their cubic is worth nothing."""
+    assert confirm(simulate(random_changes("windows", 22))).holds
 
 
 @pytest.mark.parametrize(

@@ -79,8 +79,7 @@ class Cycle:
         5.5
         """
         first, period = float(self.knots[0]) - NEAR, self.period
-        starts = (self.knots[:-1] - self.knots[0]).tolist()
-        pieces, high = self.coefficients.T.tolist(), high - 2.0 * NEAR
+        (starts, pieces), low, high = self._numbers, float(low), float(high) - 2.0 * NEAR
 
         def value(angle: float) -> float:
             inside = low if angle < low else high if angle > high else angle
@@ -88,9 +87,14 @@ class Cycle:
             k = bisect_right(starts, x) - 1
             a, b, c, d = pieces[k]
             x += angle - inside - starts[k] - NEAR
-            return float(((a * x + b) * x + c) * x + d)
+            return ((a * x + b) * x + c) * x + d
 
         return value
+
+    @cached_property
+    def _numbers(self) -> tuple[list[float], list[list[float]]]:
+        """Where its pieces start above the first knot [rad], and their coefficients."""
+        return (self.knots[:-1] - self.knots[0]).tolist(), self.coefficients.T.tolist()
 
     def integral(self, angle: ArrayLike) -> Array:
         """Integral over the angle from the first knot to angles [rad] of any shape.

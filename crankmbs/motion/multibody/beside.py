@@ -86,7 +86,8 @@ def initial(train: CrankTrain, step: float) -> tuple[Array, Array, Array]:
     assert isinstance(first.speed, float)
     with closing(Model(train)) as model:
         state = State(0.0, first.angle, first.speed, 0.0, begun(train))
-        enter(model, state, 0.0, Limits(math.inf, EVERYWHERE, 0))
+        entered = enter(model, state, 0.0, Limits(math.inf, EVERYWHERE, 0))
         model.driven = train.scene.start is None
-        _, quiet = model.quiet_start(state[:3], step)
+        alpha = entered[1] if entered and not model.driven else 0.0
+        _, quiet = model.quiet_start((*state[:3], alpha), step)
     return quiet.position[0], quiet.velocity[0], quiet.acceleration[0]

@@ -79,6 +79,7 @@ class Forces:
         self.train, scene = train, train.scene
         self._areas, self._crank_ends = areas(scene)
         self._phases, self._friction = axes_of(scene).phases, scene.friction or Friction()
+        self._gases: dict[int, tuple[float, Piecewise | Cycle]] = {}  # as it was last asked for
         angles = apart(np.concatenate([crank_angle_knots(train), knots_over_angle(train)]))
         bends = self._bends(angles)
         hard = angles[bends > _BESIDE]  # by all of a force in a radian
@@ -203,7 +204,7 @@ class Forces:
         """That on the piston of the cylinder k, which is there and slides with this sign."""
         rubs, phase = self._friction, float(self._phases[k])
         viscous, whole = rubs.viscous, list[Push]()
-        gas = self._gas(k, mode.shares).by_number(*bounds.angles)
+        gas = self._gas(k, mode.shares[k] if mode.shares else 0.0).by_number(*bounds.angles)
         terms = [(1, gas)]
         for _, load in acting(self.train.loads, mode.loads):
             if not isinstance(load, OnCrank) or not load.pistons[k]:
@@ -224,15 +225,19 @@ class Forces:
             whole.append(lambda _time, theta, _s, _v: -ring - pressed * abs(gas(theta)))
         return _total(terms, whole)
 
-    def _gas(self, k: int, shares: Sequence[float]) -> Piecewise | Cycle:
-        """The gas force [N] of a cylinder over the crank angle [rad]."""
+    def _gas(self, k: int, share: float) -> Piecewise | Cycle:
+        """The gas force [N] of a cylinder over the crank angle [rad], by its share of the
+        combustion."""
         train = self.train
         if train.pressure is None:
             return Piecewise((), ((0.0, 0.0, 0.0),))
-        cubics = train.pressure[k].coefficients
-        if train.combustion is not None:
-            cubics = cubics + shares[k] * train.combustion[k].coefficients
-        return _turned(Cycle(train.pressure[k].knots, self._areas[k] * cubics), self._phases[k])
+        if k not in self._gases or self._gases[k][0] != share:
+            cubics = train.pressure[k].coefficients
+            if train.combustion is not None:
+                cubics = cubics + share * train.combustion[k].coefficients
+            gas = Cycle(train.pressure[k].knots, self._areas[k] * cubics)
+            self._gases[k] = share, _turned(gas, self._phases[k])
+        return self._gases[k][1]
 
 
 def _turned(cycle: Cycle, phase: float) -> Cycle:
@@ -256,6 +261,9 @@ def _total(
     terms: list[tuple[int, Callable[[float], float]]], whole: Sequence[Callable[..., float]]
 ) -> Callable[..., float]:
     """The sum of functions of one argument, by its number, and of all."""
+    if len(terms) == 1 and not whole:
+        slot, term = terms[0]
+        return lambda *at: term(at[slot])
 
     def total(*at: float) -> float:
         value = 0.0

@@ -25,6 +25,7 @@ __all__ = ["Path", "Stretch", "enter", "integrate"]
 
 _SAME = 1e-12  # relative: times nearer than this are one
 _ENTRY = 50  # steps that the begin of a stretch counts as
+_SHORT = 1e-5, 0.02  # of a step: a stretch less long is run in such steps of its own
 _STILL = 1e-9  # rad/s2: of an acceleration that is rounding
 
 
@@ -87,7 +88,10 @@ def integrate(
         if not stretches and state.omega == 0.0 and abs(alpha) <= _STILL and steady:
             ending = Ending.UNMOVED
             break
-        rows, ending, cost = model.run(state[:3], step, limits.steps - steps, bounds, stiff=stiff)
+        lasts, most = _lasts(state, bounds), limits.steps - steps
+        least, longest = _SHORT  # far beyond its end a force may be anything
+        own = max(lasts, least * step) if lasts < longest * step else step
+        rows, ending, cost = model.run((*state[:3], alpha), own, most, bounds, stiff=stiff)
         steps, iterations = steps + len(rows) + _ENTRY, iterations + cost
         if ending is Ending.COMPLETE:
             rows, sense = _cut(rows, bounds)
@@ -124,6 +128,13 @@ def enter(
             return bounds, alpha
         refused += sense * alpha < -_STILL
     return None if refused == 2 else (bounds, alpha)
+
+
+def _lasts(state: State, bounds: Bounds) -> float:
+    """How long a stretch lasts at the speed [s] at its begin."""
+    ahead = bounds.angles[state.omega > 0.0] - state.theta
+    turned = ahead / state.omega if ahead * state.omega > 0.0 else math.inf
+    return min(turned, bounds.times[1] - state.time)
 
 
 def _cut(rows: Array, bounds: Bounds) -> tuple[Array, float]:

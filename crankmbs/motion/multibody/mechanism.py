@@ -120,13 +120,13 @@ def add_body(system: Any, body: Body, gravity: tuple[float, float]) -> int:
 
 def build(
     mechanism: Mechanism,
-    push: Callable[[int, float], tuple[float, float]] | None,
-    torque: Callable[[float], float],
+    push: Callable[[int, float], list[float]] | None,
+    torque: Callable[[float], float] | None,
 ) -> tuple[Any, Any]:
     """exudyn's container and system of a mechanism.
 
-    push : force [N] on a piston, x and y, by its number and the solver's time [s]; None: none is
-        pushed. torque [N m] : on the crank, by the time
+    push : force [N] on a piston, x, y and z, by its number and the solver's time [s]
+    torque [N m] : on the crank, by the time; of both, None where there is none
     """
     container = exu.SystemContainer()
     system = container.AddSystem()
@@ -148,15 +148,16 @@ def build(
         if push is not None:
             force = eii.LoadForceVector(
                 markerNumber=marker(system, numbers[guide.body]),
-                loadVectorUserFunction=lambda _, time, load, k=k: [*push(k, time), 0.0],
+                loadVectorUserFunction=lambda _, time, load, k=k: push(k, time),
             )
             system.AddLoad(force)
-    crank = eii.MarkerNodeCoordinate(nodeNumber=numbers["crank"], coordinate=2)
-    turn = eii.LoadCoordinate(
-        markerNumber=system.AddMarker(crank),
-        loadUserFunction=lambda _, time, load: torque(time),
-    )
-    system.AddLoad(turn)
+    if torque is not None:
+        crank = eii.MarkerNodeCoordinate(nodeNumber=numbers["crank"], coordinate=2)
+        turn = eii.LoadCoordinate(
+            markerNumber=system.AddMarker(crank),
+            loadUserFunction=lambda _, time, load: torque(time),
+        )
+        system.AddLoad(turn)
     return container, system
 
 

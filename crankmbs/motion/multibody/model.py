@@ -8,6 +8,7 @@ their Jacobian J and generalized forces f:
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import Any, NamedTuple
@@ -24,7 +25,7 @@ from crankmbs.motion.multibody.generalized_alpha import quiet_shifts, settings_o
 from crankmbs.motion.multibody.mechanism import build, closed, mechanism_of
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["Consistent", "Model"]
+__all__ = ["Consistent", "Model", "Row"]
 
 exu: Any = exudyn  # its stubs are narrower than what it takes
 
@@ -35,6 +36,10 @@ _BLOCK = 1000  # states that are solved for together
 _ON = 1e-11  # rad: of a bound, so near the crank is on it
 _BESIDE = 1e-10  # the same of a speed, relative; rad/s near rest
 _ROUNDED = float(np.finfo(float).eps)  # rad: of an angle, which a step makes a speed of
+
+
+Row = tuple[float, float, float, float]
+"""Time [s], crank angle [rad], speed [rad/s] and acceleration [rad/s2] of the crank."""
 
 
 class Consistent(NamedTuple):
@@ -75,7 +80,9 @@ class Model:
         self._begin, self._largest = 0.0, 1.0
         pushed = bool(scene.gas or scene.friction or scene.force)
         self._container, self._system = build(
-            self.mechanism, self._push if pushed else None, self._torque
+            self.mechanism,
+            self._push if pushed else None,
+            self._torque if scene.torque else None,
         )
         self._system.Assemble()
         data = self._system.systemData
@@ -98,12 +105,16 @@ class Model:
     def _torque(self, time: float) -> float:
         return self.torque(self._begin + time, self._q.item(2), self._v.item(2))
 
-    def _push(self, k: int, time: float) -> tuple[float, float]:
-        (x, y), at = self._towards[k], 6 + 5 * k
-        speed = x * self._v.item(at) + y * self._v.item(at + 1)
-        down = self.tops[k] + x * self._q.item(at) + y * self._q.item(at + 1)
-        force = self.pushes[k](self._begin + time, self._q.item(2), down, speed)
-        return force * x, force * y
+    def _push(self, k: int, time: float) -> list[float]:
+        if k == 0:  # exudyn asks for all, one after the other
+            q, v, time = self._q.tolist(), self._v.tolist(), self._begin + time
+            at, self._now = 6, []
+            for push, (x, y), top in zip(self.pushes, self._towards, self.tops, strict=True):
+                down, speed = top + x * q[at] + y * q[at + 1], x * v[at] + y * v[at + 1]
+                force = push(time, q[2], down, speed)
+                self._now.append([force * x, force * y, 0.0])
+                at += 5
+        return self._now[k]
 
     # over time
 
@@ -118,46 +129,43 @@ class Model:
             drive[:] = np.frompyfunc(self.torque, 3, 1)(time, theta, omega)
         return self.states(theta, omega, push, drive, free=not self.driven)
 
-    def quiet_start(
-        self, state: tuple[float, float, float], step: float
-    ) -> tuple[tuple[float, float], Consistent]:
-        """Speed and acceleration of the crank in the method's own smooth solution, and the state
-        with position, velocity and acceleration from which the multipliers do not ring.
+    def quiet_start(self, begin: Row, step: float) -> tuple[float, Consistent]:
+        """The speed of the crank in the method's own smooth solution, and the state with position,
+        velocity and acceleration from which the multipliers do not ring.
 
         A run that began with the speed v itself would have between its first two rows an error that
         does not fall as h^2 at a fixed time.
         """
-        time, theta, omega = state
-        here = self.start(*(np.array([each]) for each in state))
-        alpha, t = here.acceleration.item(2), np.array([-0.5, 0.5]) * step
-        beside = time + t, theta + (omega + 0.5 * alpha * t) * t, omega + alpha * t
-        before, after = self.start(*beside).acceleration
+        time, theta, omega, alpha = begin
+        t = np.array([0.0, -0.5, 0.5]) * step
+        near = self.start(time + t, theta + (omega + 0.5 * alpha * t) * t, omega + alpha * t)
+        _, before, after = near.acceleration
         crank, *shifts = quiet_shifts((after - before) / step, step)
         smooth = omega + float(crank[2]) if omega else 0.0  # at rest it is not to turn back
-        q, v, a = (rows + shift for rows, shift in zip(here[:3], shifts, strict=True))
-        return (smooth, alpha), here._replace(position=q, velocity=v, acceleration=a)
+        here = Consistent(*(each[:1] for each in near))
+        q, v, a = (row + shift for row, shift in zip(here[:3], shifts, strict=True))
+        return smooth, here._replace(position=q, velocity=v, acceleration=a)
 
     def run(
         self,
-        state: tuple[float, float, float],
+        begin: Row,
         step: float,
         most: int,
         bounds: Bounds,
         *,
         stiff: bool,
     ) -> tuple[Array, Ending, int]:
-        """Integrate from a time [s], angle [rad], speed [rad/s] by the generalized-alpha method.
+        """Integrate from a row by the generalized-alpha method.
 
         most : steps; bounds : the step that passes one is the last; stiff : whether Newton's method
             shall know how the loads change; 2.7 times as slow
 
         Returns
         -------
-        rows of time [s], crank angle [rad], speed [rad/s] and acceleration [rad/s2], shape (m, 4);
-        COMPLETE where a bound was passed, CALLED_OFF after all steps, DIVERGED where exudyn failed
-        or a rod turned over; iterations of Newton's method
+        rows, shape (m, 4); COMPLETE where a bound was passed, CALLED_OFF after all steps, DIVERGED
+        where exudyn failed or a rod turned over; iterations of Newton's method
         """
-        rows: list[tuple[float, float, float, float]] = []
+        rows: list[Row] = []
         rods = [*zip(self._turns.tolist()[1:], self.banks.tolist(), strict=True)]
         (_, end), (low, high), (slow, fast) = bounds
         low, high = low - _ON, high + _ON
@@ -167,15 +175,18 @@ class Model:
 
         def note(_: object, _time: float) -> bool:  # before each step, and not after the last
             nonlocal outside
-            if any(abs(self._q.item(at) - bank) > 0.5 * np.pi for at, bank in rods):
-                return False
-            time, theta, omega = state[0] + step * len(rows), self._q.item(2), self._v.item(2)
-            rows.append((time, theta, omega, self._a.item(2)) if rows else (*state[:2], *smooth))
+            q = self._q.tolist()
+            for at, bank in rods:
+                if rows and abs(q[at] - bank) > 0.5 * math.pi:
+                    return False
+            time, theta, omega = begin[0] + step * len(rows), q[2], self._v.item(2)
+            rows.append((time, theta, omega, self._a.item(2)) if rows else first)
             inside = time < end and low < theta < high and slow <= omega <= fast
             outside = len(rows) > 1 and not inside
             return not outside
 
-        self._begin, (smooth, quiet) = state[0], self.quiet_start(state, step)
+        self._begin, (smooth, quiet) = begin[0], self.quiet_start(begin, step)
+        first = *begin[:2], smooth, begin[3]
         data, initial = self._system.systemData, exu.ConfigurationType.Initial
         data.SetODE2Coordinates(quiet.position[0], initial)
         data.SetODE2Coordinates_t(quiet.velocity[0], initial)
@@ -215,19 +226,17 @@ class Model:
         jacobian, _, open_by = self._constraints(q)
         q = q - np.linalg.solve(jacobian, np.column_stack([open_by, ahead])[..., None])[..., 0]
         jacobian, bend, _ = self._constraints(q)
-        unit = np.zeros_like(q)
-        unit[:, -1] = 1.0
-        u = np.linalg.solve(jacobian, unit[..., None])[..., 0]
+        inverse = np.linalg.inv(jacobian)
+        u = inverse[..., -1]
         v = u * omega[:, None]
         turning = np.einsum("mcb,mb->mc", bend, v[:, self._turns] ** 2)
-        w = -np.linalg.solve(jacobian, np.column_stack([turning, ahead])[..., None])[..., 0]
+        w = -np.einsum("mqc,mc->mq", inverse[..., :-1], turning)
         force, alpha = self.weight + push @ self._pushed, drive
         if free:
             force[:, 2] += drive
             alpha = ((force - w * self.mass) * u).sum(axis=1) / (u**2 @ self.mass)
         a = u * alpha[:, None] + w
-        rest = (force - a * self.mass)[..., None]
-        joints = -np.linalg.solve(np.swapaxes(jacobian, 1, 2), rest)[..., 0]
+        joints = -np.einsum("mqc,mq->mc", inverse, force - a * self.mass)
         count = 2 * len(self.mechanism.hinges)
         hinges = joints[:, :count].reshape(len(theta), -1, 2)
         return Consistent(q, v, a, hinges, joints[:, count:-1], drive if free else joints[:, -1])
