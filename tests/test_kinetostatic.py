@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -138,3 +139,24 @@ def test_a_hundred_thousand_cycles_take_no_more_memory_than_one():
         load_scene("propeller"), start=None, motion=Motion(speed=1000.0), torque=(), run=run
     )
     assert simulate(scene).data.sizes["time"] == 721
+
+
+@pytest.mark.parametrize("until", ["3 rev", "1000 rev"])
+@pytest.mark.parametrize(("amplitude", "angle"), [(20.0, 0.0), (20.0, 1e4), (99.99999, 0.0)])
+def test_an_oscillating_speed_errs_by_no_more_than_it_states_however_far_it_turns(
+    amplitude, angle, until
+):
+    """At the angles of the samples the law is known in any number of digits."""
+    law = Oscillation(mean=100.0, amplitude=amplitude, order=3.7, phase=1.0)
+    scene = BASE.with_(motion=Motion(speed=law, angle=angle), run__until=until, run__every="37 deg")
+    data = simulate(scene).data
+    with mpmath.workdps(30):
+        psi = [mpmath.mpf(law.order) * mpmath.mpf(at) + 1 for at in data["crank_angle"].values]
+        speed = [law.mean + law.amplitude * mpmath.cos(each) for each in psi]
+        rate = [
+            -law.amplitude * law.order * mpmath.sin(each) * now
+            for each, now in zip(psi, speed, strict=True)
+        ]
+    for name, exact in (("crank_speed", speed), ("crank_acceleration", rate)):
+        off = np.abs(data[name].values - np.array(exact, dtype=float)).max()
+        assert off <= 2.0 * data[name].attrs["error_estimate"], name

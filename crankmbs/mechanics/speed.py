@@ -7,7 +7,7 @@ has a closed form.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -22,6 +22,8 @@ from crankmbs.scene.scene import Scene
 from crankmbs.scene.speed_rows import over_angle, remarks_on, repeats
 
 __all__ = ["SpeedLaw", "speed_law", "speed_pieces", "speed_remarks"]
+
+_ROUNDING = 2 * float(np.finfo(float).eps)  # of an angle
 
 
 class SpeedLaw(Protocol):
@@ -147,16 +149,19 @@ class _OscillatingLaw:
 
     u(psi) = 2 atan(kappa tan(psi / 2)), kappa^2 = (m - A) / (m + A), grows evenly in time:
     u' = n sqrt(m^2 - A^2). The mean of omega over the angle is m.
+
+    off : by what part of itself u is off at a time
     """
 
     speed: Oscillation
     start: float
+    off: float = 0.0
 
     turning_times = (math.inf,)
 
     @property
     def perturbed(self) -> SpeedLaw:
-        return self
+        return replace(self, off=_ROUNDING)
 
     def corners(self, begin: float, end: float) -> Array:
         return np.empty(0)
@@ -164,6 +169,7 @@ class _OscillatingLaw:
     def at_time(self, t: ArrayLike) -> tuple[Array, Array, Array]:
         law = self.speed
         u = self._even(self._psi(self.start)) + self._rate * np.asarray(t, dtype=np.float64)
+        u = u * (1.0 + self.off)
         psi = u + _bend(u, 1.0 / self._kappa)
         omega = law.mean + law.amplitude * np.cos(psi)
         alpha = -law.amplitude * law.order * np.sin(psi) * omega
