@@ -148,7 +148,8 @@ def test_an_oscillating_speed_errs_by_no_more_than_it_states_however_far_it_turn
 ):
     """At the angles of the samples the law is known in any number of digits."""
     law = Oscillation(mean=100.0, amplitude=amplitude, order=3.7, phase=1.0)
-    scene = BASE.with_(motion=Motion(speed=law, angle=angle), run__until=until, run__every="37 deg")
+    motion = Motion(speed=law, angle=angle)
+    scene = BASE.with_(gas=None, motion=motion, run__until=until, run__every="197 deg")
     data = simulate(scene).data
     with mpmath.workdps(30):
         psi = [mpmath.mpf(law.order) * mpmath.mpf(at) + 1 for at in data["crank_angle"].values]
