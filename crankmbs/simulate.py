@@ -24,7 +24,7 @@ from crankmbs.scene.scene import Scene, check_scene
 __all__ = ["functions_of", "simulate", "why"]
 
 _MOST_CYCLES = 10_000  # of a run that is followed to its stop
-_HUNTING = Ending.HUNTS, Ending.SWINGS  # its speed falls and rises again
+_NO_STOP = Ending.FADES, Ending.HUNTS, Ending.SWINGS  # its speed falls, but the crank goes on
 
 
 def simulate(
@@ -81,7 +81,7 @@ def simulate(
         keep=solution.keep,
         motion=assembled.motion,
     )
-    if scene.settles and result.status == 1 and solution.unsettled not in _HUNTING:
+    if scene.settles and result.status == 1 and solution.unsettled not in _NO_STOP:
         result = dataclasses.replace(result, message=_slowing(result) or result.message)
     return result
 

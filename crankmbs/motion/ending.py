@@ -46,6 +46,11 @@ class Ending(Enum):
         "lower speed, and it comes to a stop; give a smaller load, or one that grows with the "
         "speed",
     )
+    FADES = (
+        1,
+        "does not settle: the loads take a part of the crank's energy in every period, at any "
+        "speed, and it turns ever slower; give it a drive, such as gas or a torque",
+    )
     SLOWS_DOWN = (
         1,
         "does not settle: the loads take more in a period than the crank gets, and it stops at "

@@ -114,7 +114,7 @@ class _FixedPoint:
             if reach <= _SEARCH * energy:
                 return self._limit_at(other, sense)
             if other <= least:
-                raise LostError(Ending.STALLS)
+                raise LostError(Ending.FADES)
             trial = period_map.state(other, sense)
             beyond = period_map.period(self._grid, _LOCAL, trial, one_way=True)
             if beyond.ending is not Ending.COMPLETE or beyond.sense != sense:
