@@ -16,6 +16,7 @@ from crankmbs import (
     Extent,
     Fuel,
     Governor,
+    InputError,
     Misfire,
     Motion,
     Polytrope,
@@ -239,6 +240,14 @@ def test_a_polytrope_continues_the_file(e):
     off = np.abs(apart - fired.period * np.round(apart / fired.period)).min(axis=0)
     assert off.max() < 1e-12  # the rows are knots of both, halved where the polytrope needs it
     assert len(motored.knots) < 1.3 * len(fired.knots)
+
+
+def test_a_polytrope_needs_a_pressure_to_begin_with():
+    rows = Table([0.0, 5.2, 5.6, 6.2, 9.0], [1e5, 1.2e5, 3e5, 60e5, 2e5])  # the spline dips
+    polytrope = Polytrope(polytrope=1.3, closes=-0.9, compression_ratio=10.0)
+    scene = replace(FOUR, gas=replace(FOUR.gas, pressure=rows, motored=polytrope))
+    with pytest.raises(InputError, match=r"above 0 absolute; at 308.* bar came between the rows"):
+        motored_of(scene)
 
 
 @pytest.mark.slow

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import PPoly
 
+from crankmbs.errors import InputError
 from crankmbs.mechanics.cycle_rows import rows_of, rows_of_table
 from crankmbs.mechanics.geometry import dead_centres
 from crankmbs.mechanics.indicator import INDICATOR_RTOL, fit, indicator_pieces, relative_volume
@@ -26,7 +27,7 @@ from crankmbs.scene.gas import AnyPressure, Gas, Polytrope, tables_of
 from crankmbs.scene.pressure_rows import closing_row, interpolate, overshoot
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import Table
-from crankmbs.scene.units import BAR
+from crankmbs.scene.units import BAR, DEGREE
 
 __all__ = [
     "PeriodicPressure",
@@ -246,7 +247,12 @@ def _continued(
     gas: Gas, polytrope: Polytrope, fired: PeriodicPressure, shape: tuple[float, float, float]
 ) -> PeriodicPressure:
     """A fired pressure of a cylinder of this shape, from ``closes`` to the true bottom dead centre
-    a polytrope in its place, in every cycle."""
+    a polytrope in its place, in every cycle.
+
+    Raises
+    ------
+    InputError : no pressure to begin with
+    """
     ambient, ratio = gas.ambient or 0.0, polytrope.compression_ratio
     top, bottom = (2.0 * math.pi + angle for angle in dead_centres(*shape))
     begin, end = top + polytrope.closes, bottom
@@ -254,6 +260,12 @@ def _continued(
     knots, columns = [], []
     for at in whole:
         pressed = float(fired(at)) + ambient
+        if not pressed > 0.0:
+            raise InputError(
+                f"gas.motored.closes: a polytrope begins with a pressure above 0 absolute; at "
+                f"{at / DEGREE:.8g} degrees {pressed / BAR:.3g} bar came between the rows of the "
+                'table; give another angle, or interpolation = "pchip"'
+            )
         size = float(relative_volume(shape, ratio, np.array(at)))
 
         def pressure(angle: Array, pressed: float = pressed, size: float = size) -> Array:
