@@ -82,11 +82,11 @@ def simulate(
         motion=assembled.motion,
     )
     if scene.settles and result.status == 1 and solution.unsettled not in _NO_STOP:
-        result = dataclasses.replace(result, message=_slowing(result) or result.message)
+        result = dataclasses.replace(result, message=_slowing(result, cost_cap) or result.message)
     return result
 
 
-def _slowing(result: Result) -> str:
+def _slowing(result: Result, cost_cap: float) -> str:
     """Of a motion that does not settle, as it slows down: where and when the crank stops, and
     whether it turns back there, in a sentence; empty where it does not slow down.
 
@@ -100,7 +100,8 @@ def _slowing(result: Result) -> str:
     while stop is None and status == 0 and count < _MOST_CYCLES:
         until, every = (Extent(value=size, unit="cycle") for size in (count, 1.0))
         run = dataclasses.replace(scene.run, until=until, every=every)
-        on = simulate(dataclasses.replace(scene, run=run), formulation=result.formulation)
+        longer, formulation = dataclasses.replace(scene, run=run), result.formulation
+        on = simulate(longer, formulation=formulation, cost_cap=cost_cap)
         stop, status, count = _stop(on), on.status, 2.0 * count
     if stop is None:
         return ""

@@ -8,7 +8,19 @@ import numpy as np
 import psutil
 import pytest
 
-from crankmbs import InputError, Run, Start, Table, TimeTable, load_scene, simulate
+from crankmbs import (
+    Bearings,
+    Cylinder,
+    Friction,
+    InputError,
+    Layout,
+    Run,
+    Start,
+    Table,
+    TimeTable,
+    load_scene,
+    simulate,
+)
 from crankmbs.mechanics.variables import variables_of
 
 COASTING = load_scene("coasting")
@@ -58,11 +70,29 @@ def test_more_samples_than_memory_holds_are_refused_where_they_come(
         simulate(scene, formulation=formulation)
 
 
-def test_an_error_that_cannot_be_known_is_infinite():
-    scene = dataclasses.replace(COASTING, run=Run(until="1000 rev", every="none"))
+ONE = Layout(cylinders=(Cylinder(phase=0.0, bank=0.0, position=0.0),))
+
+
+@pytest.mark.parametrize("more", [{}, {"layout": ONE, "bearings": Bearings()}], ids=list)
+def test_an_error_that_cannot_be_known_is_infinite(more):
+    scene = dataclasses.replace(COASTING, run=Run(until="1000 rev", every="none"), **more)
     result = simulate(scene, formulation="minimal", cost_cap=5000 / PER_SECOND)
     assert result.status == -1
     assert all(stated(result, name) == math.inf for name in variables_of(scene))
+
+
+@pytest.mark.parametrize(
+    ("cap", "status", "said"),
+    [(5, -1, "takes more than the 5 evaluations"), (50, 1, "it comes to a stop")],
+)
+def test_what_a_motion_settles_to_is_sought_as_long_as_the_cost_cap_allows(cap, status, said):
+    """So is where it stops that does not settle: without that it is said in general."""
+    run = Run(until="settled", every="1 deg")
+    rings, start = Friction(ring_force=300.0), Start(angle=0.3, speed=100.0)
+    scene = dataclasses.replace(COASTING, friction=rings, start=start, run=run)
+    result = simulate(scene, cost_cap=cap / PER_SECOND)
+    assert result.status == status
+    assert said in result.message
 
 
 def test_a_swing_under_a_load_over_time_goes_on_as_long_as_the_cost_cap_allows():

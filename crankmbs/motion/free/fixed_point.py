@@ -30,7 +30,6 @@ _AT_EDGE = 1e-4  # of the energy: so near a point from where the crank does not 
 _CLOSE = 1e-3  # of the energy: between points so near there is one fixed point
 _FLIPS = 3  # changes of sense before it is given up
 _NONE = 1e-11  # 1 - factor, or of the energy, gained in a period: nothing but rounding
-_STILL = (Ending.REST, Ending.SWING, Ending.STUCK, Ending.UNMOVED)
 
 
 class Limit(NamedTuple):
@@ -200,7 +199,7 @@ class _FixedPoint:
         while True:
             returned = period_map.period(self._grid, _LOCAL, period_map.state(energy, sense))
             if returned.ending is not Ending.COMPLETE:
-                raise LostError(Ending.STALLS if returned.ending in _STILL else returned.ending)
+                raise LostError(returned.ending)
             if returned.sense != sense:
                 return period_map.state(returned.energy, returned.sense)
             energy = returned.energy

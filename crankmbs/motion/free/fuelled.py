@@ -32,7 +32,6 @@ _NEWTON, _CLOSE = 12, 1e-8  # steps, and the last one's size
 _FIRST, _MOST = 4, 512  # periods followed before each search, doubled from one to the next
 _NEAR = 0.02  # of its size: so near the fixed point the run is as good as there
 _LAST = 64  # periods in which a governor that hunts goes to both ends
-_STILL = (Ending.REST, Ending.SWING, Ending.STUCK, Ending.UNMOVED)
 
 
 class _Point(NamedTuple):
@@ -180,7 +179,7 @@ class Fuelled:
         one = integrate(grid, setup, local, by_angle=self._by_angle)
         end = one.path.state
         if one.ending is not Ending.COMPLETE or end is None:
-            raise LostError(Ending.STALLS if one.ending in _STILL else one.ending)
+            raise LostError(one.ending)
         return self._back(end, math.copysign(count * self._period, end.theta - self._angle))
 
     def _back(self, end: State, turned: float) -> State:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.mechanics.variables import variables_of
 from crankmbs.motion.account import Account
 from crankmbs.motion.assemble import Assembled, assemble
 from crankmbs.motion.base import Samples, Segment, Solution
@@ -209,7 +209,7 @@ def _solution(scene: Scene, answer: Pass, better: Pass, setup: Setup) -> Solutio
         reasons = (slow,)
     evaluations = path.evaluations + better.path.evaluations
     steps = path.steps + better.path.steps
-    unknown = {} if check else dict.fromkeys({**VARIABLES, **samples.computed}, math.inf)
+    unknown = {} if check else dict.fromkeys(variables_of(scene), math.inf)
     return Solution(samples, status, text, evaluations, steps, check, unknown, reasons)
 
 

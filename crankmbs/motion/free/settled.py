@@ -49,15 +49,16 @@ def run(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) -> A
         decay = settling.decay()
     except LostError as lost:
         assembled = passes.run(train, rtol, cost_cap, by_angle=by_angle)
-        return assembled if assembled.solution.status != 0 else _said(assembled, lost)
+        return assembled if assembled.solution.status != 0 else _said(assembled, lost, allowed)
     return assembled if assembled.solution.status != 0 else _settled(assembled, decay)
 
 
-def _said(assembled: Assembled, lost: LostError) -> Assembled:
+def _said(assembled: Assembled, lost: LostError, allowed: int) -> Assembled:
     """The period from the start, with the reason why nothing settles."""
     samples = assembled.solution.samples
     at = float(samples.theta[-1]), float(samples.omega[-1])
-    status, message = lost.ending.said(*at, periods=MOST_PERIODS, factor=lost.factor)
+    numbers = {"periods": MOST_PERIODS, "factor": lost.factor, "allowed": allowed}
+    status, message = lost.ending.said(*at, **numbers)
     solution = replace(assembled.solution, status=status, message=message, unsettled=lost.ending)
     return replace(assembled, solution=solution)
 

@@ -32,12 +32,17 @@ _KEPT = 1e-6  # of an integral that nothing changes: rounding of the differences
 _POLISHES = 12  # steps at most; they end where a step is not half the one before
 
 
+_STILL = (Ending.REST, Ending.STICKS, Ending.SWING, Ending.STUCK, Ending.UNMOVED)
+
+
 class LostError(Exception):
-    """The run does not settle, for a reason; factor by which a period changes a disturbance."""
+    """The run does not settle, for a reason: how a period ends in which the crank does not turn
+    on, or what becomes of them; factor by which one changes a disturbance."""
 
     def __init__(self, ending: Ending, factor: float = math.nan) -> None:
         super().__init__(ending)
-        self.ending, self.factor = ending, factor
+        self.ending = Ending.STALLS if ending in _STILL else ending
+        self.factor = factor
 
 
 @dataclass
