@@ -72,16 +72,25 @@ class Lagrange:
         series = np.moveaxis((rows - first[..., None]) @ self._to_series[:, 0].T, -1, 0)
         return np.asarray(first.take(k, axis=-1) + summed(series.take(k, axis=-1), x))
 
-    def inverse(self, rows: Array, k: Index, values: Array) -> Array:
-        """Where in [0, 1] the monotone polynomials through rows k take values, shape (p,)."""
-        first = rows[k, 0]
+    def inverse(
+        self,
+        rows: Array,
+        k: Index,
+        values: Array,
+        low: Array | float = 0.0,
+        high: Array | float = 1.0,
+    ) -> Array:
+        """Where between two places the polynomials through rows k, monotone there, take values,
+        shape (p,)."""
+        first, ends = rows[k, 0], np.empty((2, len(k)))
+        ends[0], ends[1] = low, high
         series = self.series(rows[k].T - first, 1)
 
         def at(x: Array) -> tuple[Array, Array]:
             value, slope = summed(series, x)
             return value, slope
 
-        return invert_monotone(at, values - first, np.zeros(len(k)), np.ones(len(k)))
+        return invert_monotone(at, values - first, *ends)
 
 
 @cache

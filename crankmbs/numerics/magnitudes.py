@@ -131,7 +131,7 @@ def _split_at_zeros(
     count = rows.shape[-1]
     at, row = np.nonzero(positive[1:] != positive[:-1])
     series, every = polynomials.series(rows)[:, 0], np.arange(count)
-    zeros = _zeros(polynomials.series(rows[:, 0, row], 1), fine[at], fine[at + 1])
+    zeros = polynomials.inverse(rows[:, 0].T, row, np.zeros(len(row)), fine[at], fine[at + 1])
     row = np.concatenate([every, row, every])
     ends = np.concatenate([np.zeros(count), zeros, np.ones(count)])
     order = np.lexsort((ends, row))
@@ -144,16 +144,6 @@ def _split_at_zeros(
     total = np.zeros(count)
     np.add.at(total, row, wide * pieces)
     return total
-
-
-def _zeros(series: Array, low: Array, high: Array) -> Array:
-    """The zeros of polynomials between places where their signs differ, shape (p,)."""
-    x = 0.5 * (low + high)
-    for _ in range(_STEPS):
-        value, slope = summed(series, x)
-        move = np.divide(value, slope, out=np.zeros_like(value), where=slope != 0.0)
-        x = np.clip(x - move, low, high)
-    return x
 
 
 def _halved(polynomials: Lagrange, rows: Array) -> Array:

@@ -25,16 +25,14 @@ from numpy.typing import NDArray
 from crankmbs.mechanics.torque import Course
 from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.numerics.arrays import Array, Index, largest_of_row
+from crankmbs.numerics.lagrange import Lagrange, at_nodes, ends_and_nodes
 
 __all__ = ["Missing", "sign_changes_in", "what_misses"]
 
 _WORST = 0.31  # over s^2: what s nodes miss of a kink of slope 1; (pi / 2)^2 / 8, for many nodes
-_HALVES = 10  # a mark a thousandth of the stretch off still lies between the two kinks
-_NEWTON = 5  # steps, kept within brackets
 _MENDED = 50.0  # times what may be missed: kinks whose errors, known to a hundredth, are added
 _CALM = 0.01  # of a cell's energy, by the slopes of its loads: what a missed kink feeds back
 _AT_EDGE = 1e-7  # rad: a root so near an edge is there
-_BISECTIONS = 50  # to 1e-15 of a piece
 _LITTLE = 1e-3  # of what a cell may miss: a kink worth less stays in it beside others
 
 
@@ -42,40 +40,33 @@ class _Passed(NamedTuple):
     """Rows that a variable of the loads passes, shape (n,) each.
 
     cell, row : their numbers; low, high : positions in the cell, 0 to 1, of points around it;
-    position : between them, where a straight line passes it; rises : sign of the slope; missed [J]
+    rises : sign of the slope; missed [J]
     """
 
     cell: Index
     row: Index
     low: Array
     high: Array
-    position: Array
     rises: Array
     missed: Array
 
     def select(self, which: NDArray[np.bool_]) -> _Passed:
         """Some of them."""
-        cell, row, *others = self
-        low, high, position, rises, missed = (part[which] for part in others)
-        return _Passed(cell[which], row[which], low, high, position, rises, missed)
+        return _Passed._make(part[which] for part in self)
 
 
 class _Points(NamedTuple):
-    """A variable at begin, nodes and end of some cells: positions 0 to 1, shape (s + 2,), values
-    and bends of the torque's slope at its rows; the cells' numbers and widths, and what each may
-    miss [J]."""
+    """A variable at begin, nodes and end of some cells: the polynomials through them, values, rows,
+    and bends of the torque's slope there; the cells' numbers and widths, and what each may miss
+    [J]."""
 
-    x: Array
+    through: Lagrange
     values: Array
     rows: Array
     bends: Array
     cell: Index
     width: Array
     least: Array
-
-    def polynomials(self, k: Index) -> Array:
-        """Coefficients by descending power, shape (s + 2, n), of the variable in these of them."""
-        return np.asarray(np.linalg.solve(np.vander(self.x), self.values[k].T))
 
 
 class Missing(NamedTuple):
@@ -116,7 +107,9 @@ def what_misses(segment: AngleSegment, allowed: float) -> Missing:
     for points, rows, (turning, tops) in blocks:
         worth = bad[points.cell][rows.cell] & (rows.missed > _LITTLE * points.least[rows.cell])
         passed = rows.select(worth)
-        cell, at = points.cell[passed.cell], _located(points, passed)
+        cell = points.cell[passed.cell]
+        of, between = (points.values, passed.cell), (passed.low, passed.high)
+        at = points.through.inverse(*of, points.rows[passed.row], *between)
         added = mended[cell]
         more = _gained(points, passed.select(added), at[added], segment)
         gained += np.bincount(cell[added], more, len(gained))
@@ -128,13 +121,10 @@ def what_misses(segment: AngleSegment, allowed: float) -> Missing:
 def _gained(points: _Points, passed: _Passed, x: Array, segment: AngleSegment) -> Array:
     """Energy [J] that the Gauss rule misses of the rows' kinks at positions x: the integral of the
     variable's polynomial beyond the row, less its sum over the nodes there."""
-    of, nodes, weights = points.polynomials(passed.cell), points.x[1:-1], segment.grid.rule.weights
-    degree = np.arange(len(of), 0, -1.0)[:, None]
-    whole = np.vstack([of / degree, np.zeros(len(x))])
-    integral = _value(whole, np.ones_like(x))[0] - _value(whole, x)[0]
-    above = points.values[passed.cell, 1:-1] - points.rows[passed.row][:, None]
-    total = np.where(nodes > x[:, None], above, 0.0) @ weights
-    error = integral - points.rows[passed.row] * (1.0 - x) - total
+    through, above = points.through, points.values[passed.cell] - points.rows[passed.row][:, None]
+    beyond = through.part(above.T, x, 1.0)
+    total = np.where(through.places > x[:, None], above, 0.0)
+    error = ((1.0 - x) * beyond - total.T).T @ through.weights
     width = segment.sense * points.width[passed.cell]
     return np.asarray(width * points.bends[passed.row] * passed.rises * error)
 
@@ -142,7 +132,7 @@ def _gained(points: _Points, passed: _Passed, x: Array, segment: AngleSegment) -
 def _near_rows(segment: AngleSegment, course: Course, least: Array) -> list[_Points]:
     """Time and speed in the cells that a row lies in, or is no farther from than the nodes from one
     another."""
-    x = np.concatenate([[0.0], segment.grid.rule.nodes, [1.0]])
+    through = ends_and_nodes(len(segment.grid.rule.nodes))
     width, near = segment.terms.width, []
     passed = np.diff(np.searchsorted(course.times, segment.time))
     k = np.flatnonzero(passed)
@@ -151,7 +141,7 @@ def _near_rows(segment: AngleSegment, course: Course, least: Array) -> list[_Poi
         begin = segment.time[k, None]
         time = np.hstack([begin, begin + spent, segment.time[k + 1, None]])
         bends = np.diff(course.in_time[:, 1])
-        near.append(_Points(x, time, course.times, bends, k, width[k], least[k]))
+        near.append(_Points(through, time, course.times, bends, k, width[k], least[k]))
     slow, fast = 1.0 / largest_of_row(segment.slowness), -1.0 / largest_of_row(-segment.slowness)
     rows = np.sort(segment.sense * course.speeds)
     before, after = np.searchsorted(rows, [2.0 * slow - fast, 2.0 * fast - slow])
@@ -162,7 +152,7 @@ def _near_rows(segment: AngleSegment, course: Course, least: Array) -> list[_Poi
     if len(k):
         inside = segment.sense / segment.slowness[k]
         omega = np.column_stack([segment.speeds[k], inside, segment.speeds[k + 1]])
-        near.append(_Points(x, omega, course.speeds, bends, k, width[k], least[k]))
+        near.append(_Points(through, omega, course.speeds, bends, k, width[k], least[k]))
     return near
 
 
@@ -182,7 +172,7 @@ def _may_miss(segment: AngleSegment, k: Index, worth: Array) -> NDArray[np.bool_
 
 def _passed(points: _Points) -> _Passed:
     """The rows between each two neighbouring points."""
-    x, values, rows, bends = points[:4]
+    x, values, rows, bends = points.through.places, *points[1:4]
     below = np.searchsorted(rows, values)
     k, j = np.nonzero(np.diff(below, axis=1))
     times = np.abs(below[k, j + 1] - below[k, j])
@@ -194,26 +184,12 @@ def _passed(points: _Points) -> _Passed:
     at_edge = 0.5 * np.minimum(position, 1.0 - position) ** 2
     share = np.minimum(at_edge, _WORST / (len(x) - 2) ** 2)
     missed = points.width[k] * np.abs(bends[row] * rise / (high - low)) * share
-    return _Passed(k, row, low, high, position, np.sign(rise), missed)
-
-
-def _located(points: _Points, passed: _Passed) -> Array:
-    """Positions in the cells where the variable passes its rows."""
-    of, target = points.polynomials(passed.cell), points.rows[passed.row]
-    low, high, x = passed[2:5]
-    for _ in range(_NEWTON):
-        value, slope = _value(of, x)
-        above = (value - target) * passed.rises > 0.0
-        low, high = np.where(above, low, x), np.where(above, x, high)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            new = x - (value - target) / slope
-        x = np.where((new > low) & (new < high), new, 0.5 * (low + high))
-    return x
+    return _Passed(k, row, low, high, np.sign(rise), missed)
 
 
 def _turns(points: _Points) -> tuple[Index, Array]:
     """Cells and positions where the variable turns beyond a row that no point beside it passed."""
-    x, values, rows, bends = points[:4]
+    x, values, rows, bends = points.through.places, *points[1:4]
     rise, none = np.diff(values, axis=1), np.zeros((len(values), 1))
     before, after = np.hstack([none, rise]), np.hstack([rise, none])
     reach, side = np.abs(before) + np.abs(after), np.sign(before - after)
@@ -226,23 +202,11 @@ def _turns(points: _Points) -> tuple[Index, Array]:
     j = np.where(np.arange(len(i)) < len(i) // 2, i - 1, i)  # it turns before the point or after it
     inside = (j >= 0) & (j < rise.shape[1])
     k, j, at, side, below = (part[inside] for part in (k, j, at, side, below))
-    of, low, high = points.polynomials(k), x[j], x[j + 1]
-    for _ in range(_HALVES):
-        middle = 0.5 * (low + high)
-        later = _value(of, middle)[1] * side > 0.0
-        low, high = np.where(later, middle, low), np.where(later, high, middle)
-    top = _value(of, low)[0]
+    slopes = values @ points.through.slopes.T
+    tops = points.through.inverse(slopes, k, np.zeros(len(k)), x[j], x[j + 1])
+    top = points.through.values(values, k, tops)
     passes = (np.searchsorted(rows, top) != below) & (worth[k] * np.abs(top - at) > 1.0)
-    return k[passes], low[passes]
-
-
-def _value(of: Array, x: Array) -> tuple[Array, Array]:
-    """Values and slopes of polynomials, coefficients by descending power in the rows of ``of``."""
-    value, slope = np.zeros_like(x), np.zeros_like(x)
-    for coefficient in of:
-        slope = slope * x + value
-        value = value * x + coefficient
-    return value, slope
+    return k[passes], tops[passes]
 
 
 def sign_changes_in(segment: AngleSegment) -> Array:
@@ -253,25 +217,15 @@ def sign_changes_in(segment: AngleSegment) -> Array:
     if terms.rubbed.shape[-1] == 0 or train.pressure is None or train.combustion is None:
         return bends[0]
     theta = terms.angles(segment.begin.theta, segment.sense, segment.grid.rule)
-    nodes = segment.grid.rule.nodes
-    to_cubic = np.linalg.pinv(np.vander(nodes, 4)).T
-    x = np.concatenate([[0.0], nodes, [1.0]])
+    through = at_nodes(len(segment.grid.rule.nodes))
+    x = np.concatenate([[0.0], through.places, [1.0]])
     for k, cylinder in enumerate(train.scene.cylinders):
         phi = theta + cylinder.phase
         force = train.pressure[k](phi) + segment.shares[:, k, None] * train.combustion[k](phi)
-        cubics = force @ to_cubic
-        values = cubics @ np.vander(x, 4).T
+        values = force @ through.basis(x).T
         cell, at = np.nonzero(values[:, 1:] * values[:, :-1] < 0.0)
-        low, high = x[at], x[at + 1]
-        falls = values[cell, at] > 0.0
-        for _ in range(_BISECTIONS):
-            middle = 0.5 * (low + high)
-            positive = np.polynomial.polynomial.polyval(middle, cubics[cell, ::-1].T, False) > 0.0
-            low, high = (
-                np.where(positive == falls, middle, low),
-                np.where(positive == falls, high, middle),
-            )
-        behind = low * terms.width[cell]
+        behind = through.inverse(force, cell, np.zeros(len(cell)), x[at], x[at + 1])
+        behind *= terms.width[cell]
         inside = np.minimum(behind, terms.width[cell] - behind) > _AT_EDGE
         bends.append((segment.edges[cell] + behind)[inside])
     return np.concatenate(bends)
