@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from crankmbs.numerics.arrays import Array, Index
+from crankmbs.numerics.collocation import Rule, gauss
 from crankmbs.numerics.roots import invert_monotone
 
 __all__ = ["AngleLaw", "Panels"]
@@ -43,9 +44,9 @@ class AngleLaw:
         self._begun = self._slowly(np.asarray(start))
 
     @property
-    def rule(self) -> tuple[Array, Array]:
-        """Nodes and weights of Gauss's rule on the unit interval."""
-        return _GAUSS[_NODES]
+    def rule(self) -> Rule:
+        """Of the quadrature."""
+        return gauss(_NODES)
 
     @property
     def turning_times(self) -> tuple[float, ...]:
@@ -114,9 +115,9 @@ class AngleLaw:
 
     def _within(self, k: Index, x: Array, count: int = _NODES) -> Array:
         """int d theta / |omega| over the first x [rad] of panels k [s]."""
-        nodes, weights = _GAUSS[count]
-        slowness = 1.0 / np.abs(self._speed(k[..., None], x[..., None] * nodes)[0])
-        return np.asarray(x * (slowness @ weights))
+        rule = gauss(count)
+        slowness = 1.0 / np.abs(self._speed(k[..., None], x[..., None] * rule.nodes)[0])
+        return np.asarray(x * (slowness @ rule.weights))
 
     def _speed(self, k: Index, x: Array) -> tuple[Array, Array]:
         """omega and d omega / d theta at x [rad] from the beginning of panels k."""
@@ -158,11 +159,3 @@ class Panels(NamedTuple):
     piece: Index
     lead: Array
     times: Array
-
-
-def _rule(count: int) -> tuple[Array, Array]:
-    nodes, weights = np.polynomial.legendre.leggauss(count)
-    return 0.5 * (1.0 + nodes), 0.5 * weights
-
-
-_GAUSS = {count: _rule(count) for count in (_NODES, _FEWER)}

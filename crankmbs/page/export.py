@@ -221,15 +221,14 @@ def _motion(motion: Motion) -> dict[str, Any]:
 def _over_angle(start: float, speed: SpeedFile) -> dict[str, Any]:
     knots, coefficients = over_angle(speed.file, speed.interpolation)
     law = AngleLaw(knots, coefficients, start, repeats=repeats(speed.file))
-    nodes, weights = law.rule
     return {
         "kind": "over_angle",
         "angle": start,
         "repeats": repeats(speed.file),
         "knots": knots,
         "coefficients": coefficients.ravel(),
-        "nodes": nodes,
-        "weights": weights,
+        "nodes": law.rule.nodes,
+        "weights": law.rule.weights,
         **law.panels._asdict(),
     }
 
