@@ -5,8 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from references import worst_ratio
+from scipy.integrate import solve_ivp
 
-from crankmbs import Gravity, Run, Viscous, load_scene, simulate
+from crankmbs import Constant, Gravity, Run, Start, Viscous, load_scene, simulate
+from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.base import Samples
 from crankmbs.motion.free.passes import match, stays
 from validation.random_periods import random_periods
@@ -50,6 +53,42 @@ def test_when_it_is_deemed_at_rest_is_no_error(until, formulation):
     assert np.all(np.diff(time) > 0.0)
     late = result.data["crank_speed"].values[time > 13.0]
     assert np.abs(late).max() <= 5e-6
+
+
+@pytest.mark.parametrize("speed", [0.0, 0.05])
+def test_a_crank_creeps_under_a_stiff_load_in_long_steps(speed):
+    """Its torque falls 50,000 times within the time in which the crank turns by a radian."""
+    loads = Constant(torque=50.0), Viscous(coefficient=1000.0)
+    run = Run(until="0.2 rev", every="5 deg")
+    start = Start(angle=-7.0, speed=speed)
+    scene = replace(load_scene("coasting"), torque=loads, start=start, run=run)
+    result = simulate(scene)
+    assert result.status == 0
+    assert result.cost.evaluations < 20_000  # 60 million are stable steps of an explicit method
+    data, train = result.data, crank_train(scene)
+
+    def slopes(_, y):
+        inertia, slope, torque = (float(part) for part in reduce(train, y[0]))
+        return y[1], (torque + 50.0 - 1000.0 * y[1] - 0.5 * slope * y[1] ** 2) / inertia
+
+    def derivatives(_, y):
+        inertia, off = float(reduce(train, y[0]).inertia), 1e-5
+        of_angle = slopes(0.0, (y[0] + off, y[1]))[1] - slopes(0.0, (y[0] - off, y[1]))[1]
+        return [[0.0, 1.0], [0.5 * of_angle / off, -1000.0 / inertia]]
+
+    times, close = data.time.values, {"rtol": 1e-11, "atol": [1e-13, 1e-14]}
+    by_scipy = solve_ivp(
+        slopes,
+        (0.0, times[-1]),
+        (-7.0, speed),
+        method="Radau",
+        t_eval=times,
+        jac=derivatives,
+        **close,
+    )
+    for name, there in zip(("crank_angle", "crank_speed"), by_scipy.y, strict=True):
+        off = np.abs(data[name].values - there)[1:].max()
+        assert off <= 2.0 * data[name].error_estimate + 1e-11
 
 
 def samples(time, theta):

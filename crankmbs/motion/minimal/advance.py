@@ -224,7 +224,7 @@ class _Walk:
         equation, control, time = self._equation, self._control, self._time
         begin = State(time, self._theta, float(self._y[1]), 0.0)
         stiff = equation.is_stiff(begin, control.tolerance * control.speed)
-        solver = self._solver_of(Radau, width) if stiff else self._dop853(width, slopes)
+        solver = self._radau(width, begin) if stiff else self._dop853(width, slopes)
         failed = solver.step()
         self._evaluations += solver.nfev
         functions = equation.branch.functions
@@ -243,16 +243,20 @@ class _Walk:
     def _dop853(self, width: float, slopes: Array) -> Any:
         """Made once, then set back: to make one takes a tenth of a step."""
         if self._steps_of_dop853 is None:
-            self._steps_of_dop853 = self._solver_of(StepByStep, width)
+            self._steps_of_dop853 = self._solver_of(StepByStep, width, self._control.tolerance)
         else:
             self._steps_of_dop853.again(width, slopes)
         return self._steps_of_dop853
 
-    def _solver_of(self, method: Any, width: float) -> Any:
+    def _radau(self, width: float, begin: State) -> Any:
+        """Of the slopes' derivatives the stiff one is enough; SciPy's differences would be lost in
+        the rounding of what a step adds to."""
+        derivatives = np.array([[0.0, 1.0, 0.0], [0.0, self._equation.rate(begin), 0.0], 3 * [0.0]])
+        tolerance = max(self._control.tolerance, _RADAU)
+        return self._solver_of(Radau, width, tolerance, jac=derivatives)
+
+    def _solver_of(self, method: Any, width: float, tolerance: float, **more: Array) -> Any:
         """Of what a step adds: relative to the values SciPy asks for 100 roundings."""
-        control, stiff = self._control, method is Radau
-        tolerance = max(control.tolerance, _RADAU if stiff else _FINEST)
-        absolute = tolerance if stiff else control.tolerance
         return method(
             self._slopes_after,
             0.0,
@@ -260,8 +264,9 @@ class _Walk:
             width,
             first_step=width,
             max_step=width,
-            rtol=tolerance,
-            atol=np.array([absolute, absolute * control.speed, math.inf]),
+            rtol=max(tolerance, _FINEST),
+            atol=np.array([tolerance, tolerance * self._control.speed, math.inf]),
+            **more,
         )
 
     def _slopes_after(self, t: float, gained: Array) -> Array:

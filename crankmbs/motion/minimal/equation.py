@@ -63,11 +63,16 @@ class Equation:
         """Whether the loads damp the speed a thousand times while the crank turns 5 degrees, and
         what they had to damp is gone, or less than the ``least`` speed [rad/s] that matters: while
         it still dies away small steps are needed anyway."""
-        inertia, _, _, drag = self.piece(state.theta - self.piece.middle)
-        damping = abs(self.branch.c1 + 2.0 * self.branch.c2 * state.omega - drag) / inertia
+        damping = abs(self.rate(state))
         strong = damping * 5.0 * DEGREE > 1e3 * abs(state.omega)
         small = max(0.01 * abs(state.omega), least)
+        inertia = self.piece(state.theta - self.piece.middle)[0]
         return strong and abs(self.pull(state)) < inertia * damping * small
+
+    def rate(self, state: State) -> float:
+        """By how much loads and friction change the acceleration per speed [1/s]."""
+        inertia, _, _, drag = self.piece(state.theta - self.piece.middle)
+        return (self.branch.c1 + 2.0 * self.branch.c2 * state.omega - drag) / inertia
 
     @property
     def changes(self) -> bool:
