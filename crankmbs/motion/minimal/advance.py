@@ -37,6 +37,7 @@ _BEYOND = 1.02  # of the way to a knot: a step that goes there, so that it is pa
 _FIRST = 1e-3  # of the step that could be: the first one behind a knot, where it hesitates
 _LAST = 0.9  # of the way to a knot: a step there, where it hesitates
 _GROWS = 10.0  # times at most, from one step of DOP853 to the next
+_OFF = 1e-6  # rad: of a difference
 _LOST = 1e-14  # of the time: no shorter step leads to where a function of Python has a value
 _LEAVES = 1e-12  # of a step: a motion that leaves a limit before has not set out
 
@@ -243,19 +244,29 @@ class _Walk:
     def _dop853(self, width: float, slopes: Array) -> Any:
         """Made once, then set back: to make one takes a tenth of a step."""
         if self._steps_of_dop853 is None:
-            self._steps_of_dop853 = self._solver_of(StepByStep, width, self._control.tolerance)
+            control = self._control
+            solver = self._solver_of(StepByStep, width, control.tolerance, control.speed)
+            self._steps_of_dop853 = solver
         else:
             self._steps_of_dop853.again(width, slopes)
         return self._steps_of_dop853
 
     def _radau(self, width: float, begin: State) -> Any:
-        """Of the slopes' derivatives the stiff one is enough; SciPy's differences would be lost in
-        the rounding of what a step adds to."""
-        derivatives = np.array([[0.0, 1.0, 0.0], [0.0, self._equation.rate(begin), 0.0], 3 * [0.0]])
-        tolerance = max(self._control.tolerance, _RADAU)
-        return self._solver_of(Radau, width, tolerance, jac=derivatives)
+        """With the derivatives of the slopes; SciPy's differences would be lost in the rounding of
+        what a step adds to. It may err in the speed by as much as in the acceleration, of which the
+        load makes so much more."""
+        time, y = self._origin
+        off = np.array([_OFF, 0.0, 0.0])
+        ahead, behind = (self._equation.slopes(time, y + each)[1] for each in (off, -off))
+        rate, tolerance = self._equation.rate(begin), max(self._control.tolerance, _RADAU)
+        rates = [0.5 * (ahead - behind) / _OFF, rate, 0.0]
+        derivatives = np.array([[0.0, 1.0, 0.0], rates, 3 * [0.0]])
+        speed = self._control.speed * min(self._control.speed / abs(rate), 1.0)
+        return self._solver_of(Radau, width, tolerance, speed, jac=derivatives)
 
-    def _solver_of(self, method: Any, width: float, tolerance: float, **more: Array) -> Any:
+    def _solver_of(
+        self, method: Any, width: float, tolerance: float, speed: float, **more: Array
+    ) -> Any:
         """Of what a step adds: relative to the values SciPy asks for 100 roundings."""
         return method(
             self._slopes_after,
@@ -265,7 +276,7 @@ class _Walk:
             first_step=width,
             max_step=width,
             rtol=max(tolerance, _FINEST),
-            atol=np.array([tolerance, tolerance * self._control.speed, math.inf]),
+            atol=np.array([tolerance, tolerance * speed, math.inf]),
             **more,
         )
 

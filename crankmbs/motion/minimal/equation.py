@@ -60,11 +60,11 @@ class Equation:
         )
 
     def is_stiff(self, state: State, least: float) -> bool:
-        """Whether the loads damp the speed a thousand times while the crank turns 5 degrees, and
-        what they had to damp is gone, or less than the ``least`` speed [rad/s] that matters: while
-        it still dies away small steps are needed anyway."""
+        """Whether the loads damp the speed 300 times while the crank turns 5 degrees, and what they
+        had to damp is gone, or less than the ``least`` speed [rad/s] that matters: while it still
+        dies away small steps are needed anyway."""
         damping = abs(self.rate(state))
-        strong = damping * 5.0 * DEGREE > 1e3 * abs(state.omega)
+        strong = damping * 5.0 * DEGREE > 300.0 * abs(state.omega)
         small = max(0.01 * abs(state.omega), least)
         inertia = self.piece(state.theta - self.piece.middle)[0]
         return strong and abs(self.pull(state)) < inertia * damping * small
@@ -72,7 +72,9 @@ class Equation:
     def rate(self, state: State) -> float:
         """By how much loads and friction change the acceleration per speed [1/s]."""
         inertia, _, _, drag = self.piece(state.theta - self.piece.middle)
-        return (self.branch.c1 + 2.0 * self.branch.c2 * state.omega - drag) / inertia
+        at, branch = np.array(state[:3]), self.branch
+        slope = sum(float(function.slope(*at)) for function in branch.functions)
+        return (branch.c1 + 2.0 * branch.c2 * state.omega - drag + slope) / inertia
 
     @property
     def changes(self) -> bool:
