@@ -52,6 +52,14 @@ def until(scene, value, unit, **run):
     return replace(scene, run=replace(scene.run, until=Extent(value=value, unit=unit), **run))
 
 
+def test_a_little_energy_gained_by_a_heavy_wheel_has_the_rounding_of_all_of_it():
+    heavy = wheel(Constant(torque=0.001), speed=300.0).with_(crank__inertia=20.0)
+    scene = until(heavy, 4.0 * math.pi, "rad", every="1 deg")
+    gained = simulate(scene).cycles["kinetic_energy_gained"]
+    off = np.abs(gained.values - 0.001 * scene.period).max()
+    assert 1e-12 < off <= gained.error_estimate < 1e-9
+
+
 def unbalanced(cycles):
     """Kinetic energy gained less all works [J], largest of all cycles; and the largest term."""
     left, largest = cycles["kinetic_energy_gained"].values.copy(), 0.0

@@ -55,7 +55,7 @@ def save_orders(orders: EngineOrders, folder: Path) -> Path:
             names.append(f"{row.quantity} closed form phase [deg]")
             columns += [np.abs(row.closed), np.degrees(np.angle(row.closed))]
     file, numbers = folder / "orders.csv", np.column_stack(columns)
-    np.savetxt(file, numbers, fmt="%.12g", delimiter=",", header=",".join(names), comments="")
+    np.savetxt(file, numbers, fmt="%.15g", delimiter=",", header=",".join(names), comments="")
     return file
 
 

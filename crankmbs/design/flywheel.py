@@ -9,17 +9,21 @@ from numbers import Real
 from typing import NamedTuple
 
 import numpy as np
-from scipy.integrate import cumulative_simpson
 
 from crankmbs.design.freed import balanced, mean_prescribed
 from crankmbs.errors import InputError, shown
 from crankmbs.measures import Estimate, Measures, measure
-from crankmbs.mechanics.inertia import crank_weight
+from crankmbs.measures.estimate import Number, estimates
+from crankmbs.mechanics.train import CrankTrain, crank_train, knots_over_angle
+from crankmbs.motion.motion import Motion as Solved
+from crankmbs.motion.states import balances_of, inner_samples
+from crankmbs.numerics.collocation import gauss
+from crankmbs.numerics.lagrange import ends_and_nodes
+from crankmbs.numerics.magnitudes import tops
 from crankmbs.result import Result
 from crankmbs.scene.drives import Motion, Start
 from crankmbs.scene.run import SETTLED, Extent, Run
 from crankmbs.scene.scene import Scene
-from crankmbs.scene.torque import Torque
 from crankmbs.scene.units import DEGREE
 from crankmbs.simulate import simulate
 
@@ -29,7 +33,6 @@ _CLOSE = 1e-7  # of the fluctuation: as near the target is on it,
 _LEFT = 0.1  # or within so much of its error, which hardly grows by that
 _MOST = 40  # runs
 _WIDE = 1e4  # times the lecture's inertia: the search goes no farther
-_STEP = 0.1 * DEGREE
 _NARROW = 1e-6  # of the lecture's inertia: a crank so light is none
 
 
@@ -41,8 +44,7 @@ class Flywheel:
         what the fluctuation's is worth
     added [kg m2] : of that beyond the scene's
     fluctuation, mean_speed [1, rad/s] : of the settled cycle with it
-    work [J] : W, greatest excess of work in a cycle at that constant speed; its error is the
-        difference from twice the spacing and what may lie between samples
+    work [J] : W, greatest excess of work in a cycle at that constant speed
     lecture [kg m2] : inertia of the whole engine by the lecture's J = W / (fluctuation omega^2)
     moving [kg m2] : the mean of rods and pistons over the angle, which is in it
     result : the settled cycle with the inertia, or the last one tried
@@ -132,59 +134,60 @@ def _search(scene: Scene, fluctuation: float) -> _Search:
     return _Search(freed, fluctuation, simulate if over_speed else _balanced)
 
 
-def excess_at(scene: Scene, speed: float) -> tuple[float, float]:
+def excess_at(scene: Scene, speed: float) -> tuple[Estimate, float]:
     """What `excess` gives of a scene over a period at a constant speed [rad/s].
 
-    >>> excess_at(load_scene("propeller"), 300.0)[0] > 0.0
+    >>> excess_at(load_scene("propeller"), 300.0)[0].value > 0.0
     True
     """
-    return excess(_even(scene, speed), scene.torque)
-
-
-def _even(scene: Scene, speed: float) -> Result:
-    """A period at a constant speed [rad/s], at steps so fine that W is right to some 1e-7."""
     drive = scene.start or scene.motion
     assert drive is not None
     until = Extent(value=scene.settled_period, unit="rad")
-    run = Run(until=until, every=Extent(value=_STEP, unit="rad"), rtol=scene.run.rtol)
+    run = Run(until=until, every=Extent(value=DEGREE, unit="rad"), rtol=scene.run.rtol)
     motion = Motion(speed=speed, angle=drive.angle)
-    return simulate(replace(scene, start=None, torque=(), motion=motion, run=run))
+    return excess(simulate(replace(scene, start=None, torque=(), motion=motion, run=run)), scene)
 
 
-def excess(even: Result, loads: tuple[Torque, ...] = ()) -> tuple[float, float]:
+def excess(even: Result, free: Scene | None = None) -> tuple[Estimate, float]:
     """(W [J], J omega^2 [J]) of the lecture's formula, from a run of whole cycles at constant
     speed: the range of the work that rods, the crank's own weight, and loads over the angle or of
-    Python do beyond its mean, twice the mean kinetic energy.
+    Python of the ``free`` scene do beyond its mean, with its error; twice the mean kinetic energy.
 
-    >>> excess(simulate(load_scene("yi_diesel")))[0] > 0.0
+    >>> excess(simulate(load_scene("yi_diesel")))[0].value > 0.0
     True
     """
-    energy = even.data["kinetic_energy"].values[
-        :-1
-    ]  # the last sample is the first of the next period
-    return _range(even, loads, 1)[0], 2.0 * float(energy.mean())
+    loads = crank_train(free) if free else None
+    ((work,),) = estimates(even.passes, lambda one: {"work": _excess(one, loads)}).values()
+    energy = even.sampled("kinetic_energy")[:-1]  # the last sample is the first of the next period
+    return work, 2.0 * float(energy.mean())
 
 
-def _range(even: Result, loads: tuple[Torque, ...], stride: int) -> tuple[float, float]:
-    """W [J] from every so-many-th sample, and how far its two ends, if parabolas, may lie beyond
-    the samples."""
-    angle = even.data["crank_angle"].values[::stride]
-    turned = np.abs(angle - angle[0])
-    torque = even.data["crank_torque"].values[::stride].sum(axis=1)  # of rods
-    torque += crank_weight(even.scene, angle)
-    work = cumulative_simpson(torque, x=turned, initial=0.0)
-    sense = math.copysign(1.0, angle[-1] - angle[0])
-    speed = even.data["crank_speed"].values[::stride]
-    for load in loads:
+def _excess(even: Solved, loads: CrankTrain | None) -> Number:
+    """W [J] of a motion at constant speed: the work over the angle turned is a polynomial in each
+    of its cells, cut where loads bend or jump."""
+    knots, period = (knots_over_angle(loads), loads.period) if loads else (np.empty(0), 0.0)
+    cells, *more = (each.cut_at(knots, period) for each in even.cells)
+    for each in more:
+        cells = cells.joined(each)
+    points, shape = inner_samples(cells, even.train), cells.time.shape
+    torque = -balances_of(even.train, points).row("external_torque")
+    for load in loads.scene.torque if loads else ():
         if load.parts.over_angle is not None:
-            done = load.parts.over_angle.integral(angle)
-            work += sense * (done - done[0])
+            torque = torque + load.parts.over_angle(points.theta)
         elif load.parts.function is not None:
-            work += cumulative_simpson(load(0.0, angle, speed), x=turned, initial=0.0)
-    surplus = work - work[-1] * turned / turned[-1]
-    bends = np.diff(surplus, n=2, prepend=surplus[-2], append=surplus[1])
-    ends = [int(np.argmax(surplus)), int(np.argmin(surplus))]
-    return float(np.ptp(surplus)), float(np.abs(bends[ends]).sum()) / 8.0
+            torque = torque + load(0.0, points.theta, points.omega)
+    inside, rule = torque.reshape(shape)[:, 1:-1], gauss(shape[1] - 2)
+    width = np.abs(cells.angle[:, -1:] - cells.angle[:, :1])
+    to_places = np.vstack([0.0 * rule.weights, rule.matrix, rule.weights])
+    gained = width * (inside @ to_places.T)
+    mean = gained[:, -1].sum() / width.sum()
+    surplus = gained - mean * width * cells.places
+    surplus[1:] += np.cumsum(surplus[:-1, -1])[:, None]
+    size = float(np.abs(surplus).max())
+    lines = np.stack([surplus + 2.0 * size, 2.0 * size - surplus]).reshape(-1, shape[1]).T
+    through, starts = ends_and_nodes(shape[1] - 2), np.array([0, len(width)])
+    highest, lowest = tops(through, lines[:, None], starts).size
+    return Number(np.array(highest + lowest - 4.0 * size), np.array(size))
 
 
 def _freed(scene: Scene) -> Scene:
@@ -269,11 +272,8 @@ class _Search:
 
     def _lecture(self, speed: float) -> tuple[Estimate, float]:
         """W [J] at a constant speed [rad/s], and the mean inertia of rods and pistons [kg m2]."""
-        loads, even = self._scene.torque, _even(self._scene, speed)
-        work, doubled = excess(even, loads)
-        beyond, coarse = _range(even, loads, 1)[1], _range(even, loads, 2)[0]
-        error = abs(work - coarse) + beyond
-        return Estimate(work, error), doubled / speed**2 - self._scene.crank.moment_of_inertia
+        work, doubled = excess_at(self._scene, speed)
+        return work, doubled / speed**2 - self._scene.crank.moment_of_inertia
 
     def _answer(self, trial: _Trial, present: float, rest: float, off: float) -> Flywheel:
         """The answer from the last trial; ``off`` its relative error, NaN where it is none."""

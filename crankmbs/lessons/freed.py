@@ -95,6 +95,6 @@ def textbook(result: Result) -> Textbook:
     """The textbook's numbers for the machine of a settled run."""
     speed = measure(result).mean_speed.value
     even = simulate(changed(held(result.scene, "fluctuation"), motion={"speed": abs(speed)}))
-    work, doubled = excess(even, result.scene.torque)
+    work, doubled = excess(even, result.scene)
     moving = doubled / speed**2 - result.scene.crank.moment_of_inertia
-    return Textbook(work=work, moving=float(np.abs(moving)), speed=abs(speed), even=even)
+    return Textbook(work=work.value, moving=float(np.abs(moving)), speed=abs(speed), even=even)

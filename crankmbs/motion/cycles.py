@@ -234,6 +234,9 @@ class Cycles:
         rounding = _STEEP * _EPS * peak(table["crank_angle"])
         errors = {name: rounding * peak(works[:, at]) for name, at in self._columns.items()}
         errors |= {name: rounding * peak(table[name]) for name in table if name.startswith("imep")}
+        # of large energies a small difference
+        whole = inertia_alone(scene, np.array([self._start])) * peak(table["largest_speed"]) ** 2
+        errors["kinetic_energy_gained"] = _EPS * float(whole[0])
         return Rows(table, errors, self.left_out + len(self.done) - count)
 
     def _shares(self, sense: Array, before: Array, after: Array) -> Array:

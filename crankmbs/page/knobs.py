@@ -209,7 +209,7 @@ def _heaviest(scene: Scene) -> float:
     if scene.motion is not None:
         speed = mean_prescribed(scene)
         work, _ = excess_at(scene, speed)
-        most = max(most, work / (_EVEN * speed**2))
+        most = max(most, work.value / (_EVEN * speed**2))
     return _above(most or 4e-3)
 
 
