@@ -6,7 +6,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crankmbs import Constant, Fuel, InputError, Result, Run, load_scene, simulate
+from crankmbs import (
+    Constant,
+    Fuel,
+    InputError,
+    Result,
+    Run,
+    Table,
+    TimeTable,
+    load_scene,
+    simulate,
+)
 
 CASES = {
     "propeller": ("1 cycles", "5 deg", "0.77 deg"),
@@ -144,3 +154,23 @@ def test_a_share_that_is_decided_between_two_samples_is_decided_where_it_is():
     found = result.interp(time=np.minimum(true["time"].values, result.data["time"].values[-1]))
     apart = np.abs(found["fuel"].values - true["fuel"].values)
     assert np.max(apart) <= found["fuel"].attrs["error_estimate"] < 1e-12
+
+
+@pytest.mark.parametrize(
+    "load",
+    [
+        Constant(torque=-20.0, after=0.05),
+        Constant(torque=-20.0, until=0.05),
+        TimeTable(file=Table((0.0, 0.05, 0.05, 0.1), (0.0, 0.0, -20.0, -20.0))),
+    ],
+    ids=["sets in", "ends", "jumps"],
+)
+@pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
+def test_at_the_time_of_a_sample_it_is_the_sample(load, formulation):
+    """Also where a load jumps at that time: what comes after counts."""
+    scene = load_scene("coasting").with_(torque=(load,), run__until="0.1 s", run__every="0.01 s")
+    data = simulate(scene, formulation=formulation)
+    there = data.interp(time=data.data.time.values)
+    for name in ("external_torque", "crank_acceleration", "main_bearing_force_x"):
+        apart = np.abs(there[name].values - data.data[name].values).max()
+        assert apart <= there[name].error_estimate

@@ -18,6 +18,7 @@ from crankmbs.numerics.once import once
 
 __all__ = ["Motion", "Passes"]
 
+_SAME_TIME = 8 * float(np.finfo(float).eps)  # of it: rounding
 _SAME_ANGLE = 1e-9  # rad: rounding of an angle must not lose a cycle
 
 
@@ -95,12 +96,16 @@ class Motion:
     def at(self, values: Array, *, in_time: bool) -> Samples:
         """The motion at times [s], or else at crank angles [rad], shape (p,) in any order.
 
-        At a time at which something jumps it is the motion before. Values beyond an end are taken
-        at the end. By angles only where the crank turns one way.
+        At a time at which a load sets in, ends or jumps it is the motion after, as a sample is.
+        Values beyond an end are taken at the end. By angles only where the crank turns one way.
         """
-        sense = 1.0 if in_time else self.cells[0].acting.sense
-        ends = [float((each.time if in_time else each.angle)[-1, -1]) for each in self.cells]
-        piece = cell_of(sense * np.array(ends), sense * values)
+        if in_time:
+            begins = np.array([float(each.time[0, 0]) for each in self.cells[1:]])
+            piece = np.searchsorted(begins, values + _SAME_TIME * np.abs(values), side="right")
+        else:
+            sense = self.cells[0].acting.sense
+            ends = [sense * float(each.angle[-1, -1]) for each in self.cells]
+            piece = cell_of(np.array(ends), sense * values)
         order = [np.flatnonzero(piece == number) for number in np.unique(piece)]
         parts = [
             samples_at(self.cells[piece[which[0]]], self.train, values[which], in_time=in_time)
