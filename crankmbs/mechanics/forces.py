@@ -41,7 +41,6 @@ from crankmbs.numerics.function import Function, named
 from crankmbs.numerics.piecewise import Piecewise
 from crankmbs.scene.force import PistonForce, PythonLaw
 from crankmbs.scene.scene import Scene
-from crankmbs.scene.tables import Table
 from crankmbs.scene.torque import Parts
 
 __all__ = ["OnCrank"]
@@ -57,58 +56,14 @@ class OnCrank:
     force: PistonForce
 
     @property
-    def heading(self) -> str:
-        """Of its table in a file."""
-        return self.force.heading
-
-    @property
-    def called(self) -> str:
-        """Its name; without one its kind in words."""
-        return self.force.called
-
-    @property
-    def lacks(self) -> str | None:
-        """Why it cannot be run again, and the way out; None where it can."""
-        return self.force.lacks
-
-    @property
-    def table_over_time(self) -> Table | None:
-        """Its table, if that must cover the time in which it acts."""
-        return self.force.table_over_time
-
-    @property
-    def after(self) -> float | None:
-        """From when [s]."""
-        return self.force.after
-
-    @property
-    def until(self) -> float | None:
-        """To when [s]."""
-        return self.force.until
-
-    @property
-    def from_speed(self) -> float | None:
-        """From which speed [rad/s]."""
-        return self.force.from_speed
-
-    @property
-    def until_speed(self) -> float | None:
-        """To which speed [rad/s]."""
-        return self.force.until_speed
-
-    @property
-    def has_window(self) -> bool:
-        """Whether it does not act throughout."""
-        return self.force.has_window
+    def given(self) -> PistonForce:
+        """As the scene gives it."""
+        return self.force
 
     @property
     def is_steady(self) -> bool:
         """Whether it is always the same function of angle and speed."""
         return self.force.is_steady
-
-    def check_time(self, t: float) -> None:
-        """Refuse a time [s] at which it is not known."""
-        self.force.check_time(t)
 
     def __call__(self, t: ArrayLike, theta: ArrayLike, omega: ArrayLike) -> Array:
         """Torque [N m] at times [s], crank angles [rad] and speeds [rad/s] of one shape."""
