@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache, partial
 
 import numpy as np
 from scipy.interpolate import PPoly
@@ -160,9 +160,8 @@ def motored_of(scene: Scene) -> tuple[PeriodicPressure, ...]:
     assert gas.motored is not None
     if not isinstance(gas.motored, Polytrope):
         return _of_source(scene, gas, gas.motored)
-    of_each = [(one, gear.shape) for one, gear in zip(fired, scene.running_gear, strict=True)]
-    once = {each: _continued(gas, gas.motored, *each) for each in dict.fromkeys(of_each)}
-    return tuple(once[each] for each in of_each)
+    continued = cache(partial(_continued, gas, gas.motored))
+    return tuple(map(continued, fired, (gear.shape for gear in scene.running_gear)))
 
 
 def crank_ends_of(scene: Scene) -> tuple[PeriodicPressure, ...] | None:
@@ -179,12 +178,14 @@ def crank_ends_of(scene: Scene) -> tuple[PeriodicPressure, ...] | None:
 
 def _of_indicator(scene: Scene, gas: Gas, *, fires: bool) -> tuple[PeriodicPressure, ...]:
     """That of each cylinder over its own volume; cylinders of one shape share it."""
-    once = {}
-    for shape in {gear.shape for gear in scene.running_gear}:
+
+    @cache
+    def of_shape(shape: tuple[float, float, float]) -> PeriodicPressure:
         knots, coefficients = indicator_pieces(gas, shape, fires=fires)
         absolute = coefficients + np.array([[0.0], [0.0], [0.0], [gas.ambient or 0.0]])
-        once[shape] = PeriodicPressure(knots, coefficients, INDICATOR_RTOL * absolute)
-    return tuple(once[gear.shape] for gear in scene.running_gear)
+        return PeriodicPressure(knots, coefficients, INDICATOR_RTOL * absolute)
+
+    return tuple(of_shape(gear.shape) for gear in scene.running_gear)
 
 
 def _of_source(scene: Scene, gas: Gas, source: AnyPressure) -> tuple[PeriodicPressure, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 from scipy.interpolate import PPoly
@@ -107,8 +107,7 @@ class CrankTrain:
     def rubs(self) -> bool:
         """Whether something resists either sense of rotation, or with the speed: friction, or
         forces that change on the way back or with the piston's velocity."""
-        laws = (force.law for force in self.scene.force)
-        return self.scene.friction is not None or any(law.switches or law.viscous for law in laws)
+        return self.scene.friction is not None or self.drags or self.sticks
 
     @cached_property
     def drags(self) -> bool:
@@ -155,9 +154,7 @@ def crank_train(scene: Scene) -> CrankTrain:
     motored = motored_of(scene)
     if ends is not None:
         motored = _net(scene, motored, ends)
-    once = {pair: combustion_of(*pair) for pair in dict.fromkeys(zip(fired, motored, strict=True))}
-    both = [once[pair] for pair in zip(fired, motored, strict=True)]
-    without, more = (tuple(parts) for parts in zip(*both, strict=True))
+    without, more = zip(*map(cache(combustion_of), fired, motored), strict=True)
     start = scene.start
     begun = (start.angle, start.speed) if start else _beginning(scene)
     return CrankTrain(scene, without, more, FuelLaw(scene, scene.fuel, begun), ends)
@@ -168,9 +165,7 @@ def _net(
 ) -> tuple[PeriodicPressure, ...]:
     """What pushes each piston; cylinders of one pair of pressures and areas share it."""
     shares = (gear.piston.crank_end_share for gear in scene.running_gear)
-    of_each = list(zip(heads, ends, shares, strict=True))
-    once = {one: net_of(*one) for one in dict.fromkeys(of_each)}
-    return tuple(once[one] for one in of_each)
+    return tuple(map(cache(net_of), heads, ends, shares))
 
 
 def _beginning(scene: Scene) -> tuple[float, float]:
@@ -309,8 +304,7 @@ def sign_changes(train: CrankTrain, shares: Sequence[float] = ()) -> Array:
             PeriodicPressure(p.knots, p.coefficients + share * more.coefficients)
             for p, more, share in zip(pressures, train.combustion, shares, strict=True)
         ]
-    once = {each: _roots(each) for each in dict.fromkeys(pressures)}
-    return merged_knots(train, [once[each] for each in pressures])
+    return merged_knots(train, list(map(cache(_roots), pressures)))
 
 
 def _roots(pressure: PeriodicPressure) -> Array:
