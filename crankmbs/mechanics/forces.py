@@ -194,9 +194,9 @@ class _OverAngle:
     def __init__(self, load: OnCrank) -> None:
         self._load, law = load, load.force.law
         self.period = _TURN if law.over_angle is None else law.over_angle.period
-        turns = _TURN * np.arange(round(self.period / _TURN) or 1)
-        rows = np.empty(0) if law.over_angle is None else tiled(law.over_angle, self.period)
-        over_travel = (np.add.outer(turns, travel).ravel() for travel in load.travel_knots)
+        rows = np.empty(0) if law.over_angle is None else law.over_angle.knots[:-1]
+        whole = max(self.period, _TURN)
+        over_travel = (tiled(travel, _TURN, whole) for travel in load.travel_knots)
         cycle_angles = [np.concatenate([travel, rows]) for travel in over_travel]
         inside = load.at_crank(cycle_angles, self.period)
         inside = inside[(inside > KNOT) & (inside < self.period - KNOT)]
@@ -221,11 +221,11 @@ class _OfTime(Function):
         self._load, law = load, load.force.law
         python = law.python or PythonLaw(_nothing)
         period = python.period or _TURN
-        turns, knots = _TURN * np.arange(round(period / math.pi)), []
+        knots = []
         for travel, gear in zip(load.travel_knots, load.scene.running_gear, strict=True):
             centres = dead_centres(*gear.shape) if law.python is not None else ()
             # at a dead centre it may jump with the sense of the velocity
-            every = np.add.outer(turns, np.concatenate([travel, centres])).ravel()
+            every = tiled(np.concatenate([travel, centres]), _TURN, 2.0 * period)
             knots.append(np.concatenate([every, python.angles]))
         angles = load.at_crank(knots, period).tolist()
         times = (*python.times, *(law.over_time.knots if law.over_time else ()))

@@ -154,7 +154,7 @@ def summed(cycles: list[Cycle], period: float) -> Cycle | None:
     """The sum over a common period [rad], from angle 0 on; None of none."""
     if not cycles:
         return None
-    inside = [np.mod(tiled(cycle, period), period) for cycle in cycles]
+    inside = [tiled(cycle.knots[:-1], cycle.period, period) for cycle in cycles]
     knots = np.unique(np.concatenate([[0.0], *inside]))
     knots = knots[np.append(True, np.diff(knots) > NEAR) & (knots < period - NEAR)]
     knots = np.append(knots, period)
@@ -170,7 +170,11 @@ def common_period(periods: Iterable[float]) -> float:
     return math.lcm(*(round(period / math.pi) for period in periods)) * math.pi
 
 
-def tiled(cycle: Periodic, period: float) -> Array:
-    """The knots of a cycle repeated over a period of which its own is a part [rad]."""
-    turns = np.arange(round(period / cycle.period))[:, None]
-    return np.asarray((cycle.knots[:-1] + turns * cycle.period).ravel())
+def tiled(knots: Array, part: float, period: float) -> Array:
+    """Knots that come again after a part of a period, all of those in [0, period) [rad].
+
+    >>> tiled(np.array([1.0, -0.5]), 2.0, 4.0)
+    array([1. , 3.5, 3. , 1.5])
+    """
+    turns = part * np.arange(round(period / part))[:, None]
+    return np.asarray(np.mod(turns + knots, period).ravel())
