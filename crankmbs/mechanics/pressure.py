@@ -17,7 +17,7 @@ from scipy.interpolate import PPoly
 
 from crankmbs.errors import InputError
 from crankmbs.mechanics.cycle_rows import rows_of, rows_of_table
-from crankmbs.mechanics.geometry import dead_centres
+from crankmbs.mechanics.geometry import Shape, dead_centres
 from crankmbs.mechanics.indicator import INDICATOR_RTOL, fit, indicator_pieces, relative_volume
 from crankmbs.mechanics.knots import KNOT, apart, repeat
 from crankmbs.numerics.arrays import Array
@@ -180,7 +180,7 @@ def _of_indicator(scene: Scene, gas: Gas, *, fires: bool) -> tuple[PeriodicPress
     """That of each cylinder over its own volume; cylinders of one shape share it."""
 
     @cache
-    def of_shape(shape: tuple[float, float, float]) -> PeriodicPressure:
+    def of_shape(shape: Shape) -> PeriodicPressure:
         knots, coefficients = indicator_pieces(gas, shape, fires=fires)
         absolute = coefficients + np.array([[0.0], [0.0], [0.0], [gas.ambient or 0.0]])
         return PeriodicPressure(knots, coefficients, INDICATOR_RTOL * absolute)
@@ -201,7 +201,7 @@ def _of_source(scene: Scene, gas: Gas, source: AnyPressure) -> tuple[PeriodicPre
 
 
 def _continued(
-    gas: Gas, polytrope: Polytrope, fired: PeriodicPressure, shape: tuple[float, float, float]
+    gas: Gas, polytrope: Polytrope, fired: PeriodicPressure, shape: Shape
 ) -> PeriodicPressure:
     """A fired pressure of a cylinder of this shape, from ``closes`` to the true bottom dead centre
     a polytrope in its place, in every cycle.
