@@ -139,8 +139,8 @@ def functions_of(scene: Scene) -> list[tuple[str, Function]]:
     loads = crank_train(scene).loads
     for number, load in enumerate(loads, start=1):
         place = place_of(loads, number)
-        if load.lacks:
-            raise InputError(f"{place}: {load.lacks}")
+        if load.given.lacks:
+            raise InputError(f"{place}: {load.given.lacks}")
         if load.parts.function is not None:
             load.parts.function.failure = ""
             functions.append((place, load.parts.function))

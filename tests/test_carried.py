@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from crankmbs import load_scene
-from crankmbs.mechanics.carried import Shape, carried_angle, carried_over
+from crankmbs.mechanics.carried import carried_angle, carried_over
 from crankmbs.mechanics.geometry import close_loop, dead_centres
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.pressure import pressures_of
@@ -20,10 +20,10 @@ from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.scene.units import DEGREE
 
 SHAPES = [
-    (Shape(0.046, 0.153, 0.0), Shape(0.046, 0.12, 0.0)),
-    (Shape(0.046, 0.153, 0.0), Shape(0.046, 0.153, 0.022)),
-    (Shape(0.05, 0.11, -0.03), Shape(0.02, 0.3, 0.01)),
-    (Shape(1.0, 1.31, 0.3), Shape(1.0, 1.5, -0.45)),
+    ((0.046, 0.153, 0.0), (0.046, 0.12, 0.0)),
+    ((0.046, 0.153, 0.0), (0.046, 0.153, 0.022)),
+    ((0.05, 0.11, -0.03), (0.02, 0.3, 0.01)),
+    ((1.0, 1.31, 0.3), (1.0, 1.5, -0.45)),
 ]
 
 
@@ -115,7 +115,7 @@ def test_a_table_and_its_interpolation_are_the_same_pressure_elsewhere():
     scene = carried_over(altered(before, offset=0.02), before)
     table, moved = before.gas.pressure, scene.gas.pressure
     assert moved.y == table.y
-    shapes = (Shape(0.046, before.rod.length, e) for e in (before.piston.offset, 0.02))
+    shapes = ((0.046, before.rod.length, e) for e in (before.piston.offset, 0.02))
     expected = carried_angle(table.x, *shapes)
     np.testing.assert_allclose(moved.x, expected, atol=1e-15)
     (pressure,) = pressures_of(scene)

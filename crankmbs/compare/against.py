@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Container, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from crankmbs.compare.between import with_tops
+from crankmbs.compare.between import RUN, curves_of, with_tops
 from crankmbs.compare.excerpt import Answer, Excerpt, LeftOut, excerpt_of, vanishing
 from crankmbs.compare.formula import CLOSED_FORM, Formula, formulas_of, variables_of
 from crankmbs.compare.lectured import LECTURES, row_of
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Comparison", "Deviation", "compare"]
 
-_RUN = "run"  # among references, the run itself
 _Curve = tuple[str, str]  # reference and quantity
 
 
@@ -166,14 +165,15 @@ def compare(
     answers, left_out = _answers(excerpt, curves)
     zero = vanishing(answers.values())
     left_out += [LeftOut(name, "", reason) for name, reason in zero.items()]
+    names = [name for name in answers[RUN] if name not in zero]
     by_angle = [formula for formula in curves if formula.depends_on_angle_alone(excerpt)]
 
     def between(points: Excerpt) -> dict[_Curve, Array]:
         answers, _ = _answers(points, by_angle)
         del answers[CLOSED_FORM]  # by which the run itself is read there
-        return _curves(answers, zero)
+        return curves_of(answers, names)
 
-    found = with_tops(excerpt, _curves(answers, zero), between)
+    found = with_tops(excerpt, curves_of(answers, names), between)
     rows = tuple(
         Deviation(
             quantity=name,
@@ -181,45 +181,34 @@ def compare(
             values=answers[reference][name],
             error=error,
             size=found.size((reference, name)),
-            peak=found.peak((_RUN, name)),
+            peak=found.peak((RUN, name)),
         )
         for (reference, name), error in found.sampled.items()
-        if reference != _RUN
+        if reference != RUN
     )
     numbers = _numbers([f for f in user_formulas if f.is_number], excerpt, left_out)
-    simulated = {name: curve for name, curve in answers[_RUN].items() if name not in zero}
+    simulated = {name: answers[RUN][name] for name in names}
     return Comparison(excerpt, simulated, rows, numbers, tuple(left_out))
 
 
 def _answers(excerpt: Excerpt, formulas: list[Formula]) -> tuple[dict[str, Answer], list[LeftOut]]:
     """What the run and every reference give, and what they lack."""
-    answers = {_RUN: excerpt.simulated(), CLOSED_FORM: excerpt.newton_euler(excerpt.result.scene)}
+    answers = {RUN: excerpt.simulated(), CLOSED_FORM: excerpt.newton_euler(excerpt.result.scene)}
     left_out = [LeftOut(name, "", reason) for name, reason in excerpt.left_out().items()]
     for reference, truncation in LECTURES.items():
         try:
             answers[reference] = excerpt.lecture(truncation, constant_speed=True)
         except InputError as error:
-            names = [name for name in answers[_RUN] if name in QUANTITIES]
+            names = [name for name in answers[RUN] if name in QUANTITIES]
             left_out += [LeftOut(name, reference, str(error)) for name in names]
     for formula in formulas:
-        if formula.quantity in answers[_RUN]:
+        if formula.quantity in answers[RUN]:
             answers[formula.label] = {formula.quantity: formula.curve(excerpt)}
         else:
             left_out.append(
                 LeftOut(formula.quantity, formula.label, excerpt.lacks(formula.quantity))
             )
     return answers, left_out
-
-
-def _curves(answers: dict[str, Answer], zero: Container[str]) -> dict[_Curve, Array]:
-    """The run, and how far every reference is off it, of quantities that are not zero."""
-    run = {name: curve for name, curve in answers[_RUN].items() if name not in zero}
-    return {
-        (reference, name): curve if reference == _RUN else answer[name] - curve
-        for reference, answer in answers.items()
-        for name, curve in run.items()
-        if name in answer
-    }
 
 
 def _numbers(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Generic, TypeVar
@@ -17,7 +17,9 @@ from crankmbs.mechanics.peaks import peak
 from crankmbs.motion.states import variables_at
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["Curves", "magnitudes", "with_tops"]
+__all__ = ["RUN", "Curves", "curves_of", "magnitudes", "with_tops"]
+
+RUN = "run"  # among references, the run itself
 
 Key = TypeVar("Key", bound=tuple[str, ...])
 Name = TypeVar("Name", bound=Hashable)
@@ -57,6 +59,17 @@ class Curves(Generic[Key]):
         points, curves = (self.points, self.between) if known else (self.excerpt, self.sampled)
         top = top_of(curves[other], points.angles(key[1]), points.result.scene.period)
         return float(curves[key][top])
+
+
+def curves_of(answers: dict[str, Answer], names: Iterable[str]) -> dict[tuple[str, str], Array]:
+    """The run, and how far every reference is off it, of some quantities."""
+    run = answers[RUN]
+    return {
+        (reference, name): run[name] if reference == RUN else answer[name] - run[name]
+        for reference, answer in answers.items()
+        for name in names
+        if name in answer
+    }
 
 
 def with_tops(excerpt: Excerpt, sampled: dict[Key, Array], evaluate: Evaluate[Key]) -> Curves[Key]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from crankmbs.compare.between import Curves, with_tops
+from crankmbs.compare.between import RUN, Curves, with_tops
 from crankmbs.compare.chain import REST, Idealized, checked_chain
 from crankmbs.compare.excerpt import Answer, Excerpt, LeftOut, excerpt_of, vanishing
 from crankmbs.compare.formula import Formula, formulas_of, variables_of
@@ -19,8 +19,8 @@ from crankmbs.result import Result
 __all__ = ["budget"]
 
 _UNTRUNCATED, _, _TRUNCATED = LECTURES
-_RUN, _TOTAL = "run", "total"
-_Curve = tuple[str, str, str]  # reference or _RUN, quantity, cause or _TOTAL
+_TOTAL = "total"
+_Curve = tuple[str, str, str]  # reference or RUN, quantity, cause or _TOTAL
 _NO_BUDGET = "the causes are of forces and of the piston's motion at the run's own speed"
 
 
@@ -152,7 +152,7 @@ def _curves(
     zero: Container[str],
 ) -> dict[_Curve, Array]:
     """The run, and the errors of formulas with their causes, of quantities that are not zero."""
-    curves = {(_RUN, name, _TOTAL): curve for name, curve in ideal.run.items() if name not in zero}
+    curves = {(RUN, name, _TOTAL): curve for name, curve in ideal.run.items() if name not in zero}
     for evaluation in evaluations:
         for name, values in evaluation.values.items():
             if name not in zero:
@@ -184,7 +184,7 @@ def _causes(
 
 def _split(evaluation: _Evaluation, name: str, found: Curves[_Curve]) -> Split:
     """One quantity of a formula."""
-    reference, run = evaluation.reference, (_RUN, name, _TOTAL)
+    reference, run = evaluation.reference, (RUN, name, _TOTAL)
     *causes, total = (
         Cause(
             name=key[2],

@@ -9,7 +9,7 @@ from itertools import product
 
 import numpy as np
 
-from crankmbs.compare.between import magnitudes
+from crankmbs.compare.between import RUN, curves_of, magnitudes
 from crankmbs.compare.excerpt import Answer, Excerpt, excerpt_of, vanishing
 from crankmbs.compare.lectured import LECTURES
 from crankmbs.compare.quantities import QUANTITIES
@@ -25,8 +25,6 @@ from crankmbs.result import Result
 __all__ = ["largest_deviations"]
 
 Pair = tuple[str, str]
-
-_RUN = "run"  # the source that the lectures are compared with
 
 
 def largest_deviations(result: Result) -> dict[Pair, Estimate]:
@@ -53,9 +51,9 @@ def largest_deviations(result: Result) -> dict[Pair, Estimate]:
     passes = passes_over(result, excerpt.window)
     answers = _answers(replace(excerpt, variables=nodes_of(passes.answer).variables))
     zero = vanishing(answers.values())
-    names = [name for name in QUANTITIES if name in answers[_RUN] and name not in zero]
+    names = [name for name in answers[RUN] if name not in zero]
     shares = estimates(passes, partial(_shares, excerpt, names))["shares"]
-    pairs = product([source for source in answers if source != _RUN], names)
+    pairs = product([source for source in answers if source != RUN], names)
     by_pair = zip(pairs, shares, strict=True)
     return {pair: share for pair, share in by_pair if np.isfinite(share.value)}
 
@@ -66,7 +64,11 @@ def _shares(excerpt: Excerpt, names: list[str], motion: Motion) -> Numbers:
     duration = motion.end - motion.begin
     mean = excerpt.window.angle / duration if duration > 0.0 else excerpt.mean_speed
     cycle = replace(excerpt, train=motion.train, mean_speed=mean)
-    peaks = nodes_of(motion).tops(partial(magnitudes, cycle, partial(_curves, names)))
+
+    def curves(points: Excerpt) -> dict[Pair, Array]:
+        return curves_of(_answers(points), names)
+
+    peaks = nodes_of(motion).tops(partial(magnitudes, cycle, curves))
     run, *errors = peaks.value.reshape(-1, len(names))
     share = np.full(np.shape(errors), np.nan)
     np.divide(errors, run, out=share, where=run > 0.0)
@@ -81,19 +83,8 @@ def _shares(excerpt: Excerpt, names: list[str], motion: Motion) -> Numbers:
 
 def _answers(excerpt: Excerpt) -> dict[str, Answer]:
     """The quantities at points of a motion, by the run and by each lecture."""
-    answers = {_RUN: excerpt.simulated()}
+    answers = {RUN: excerpt.simulated()}
     for name, formulas in LECTURES.items():
         with suppress(InputError):  # of a rod ratio for which its series diverge
             answers[name] = excerpt.lecture(formulas, constant_speed=True)
     return answers
-
-
-def _curves(names: list[str], points: Excerpt) -> dict[Pair, Array]:
-    """The run's quantities, then every lecture's errors."""
-    answers = _answers(points)
-    run = answers[_RUN]
-    return {
-        (source, name): run[name] if source == _RUN else answer[name] - run[name]
-        for source, answer in answers.items()
-        for name in names
-    }

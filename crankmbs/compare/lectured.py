@@ -16,6 +16,7 @@ from crankmbs.compare.bodies import Bodies, bodies_of
 from crankmbs.compare.quantities import cycle_angles
 from crankmbs.errors import InputError, shown
 from crankmbs.mechanics.axes import axes_of
+from crankmbs.mechanics.inertia import gas_at
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
@@ -189,10 +190,8 @@ def lectured(
     InputError : truncated formulas with a rod ratio of 1
     """
     scene, phi = train.scene, cycle_angles(train.scene, theta)
-    difference = np.zeros_like(phi)
-    for k, pressure_at in enumerate(train.pressure or ()):
-        difference[:, k] = pressure_at(phi[:, k])
-    bodies = bodies_of(scene)
+    gas, bodies = gas_at(train, theta), bodies_of(scene)
+    difference = np.zeros_like(phi) if gas is None else gas.T
     factors = formulas.motion(phi, bodies), formulas.forces(phi, bodies)
     return quantities_by(scene, bodies, factors, theta, difference, (omega, alpha))
 

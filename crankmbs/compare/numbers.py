@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from crankmbs.compare.size import percent
 from crankmbs.measures import Estimate, Measures
 
 __all__ = ["NUMBERS", "Number", "NumberOf"]
@@ -58,5 +59,4 @@ class Number:
     @property
     def percent(self) -> float:
         """The error in percent of the run's value; NaN where that is 0."""
-        run = self.simulated.value
-        return 100.0 * self.error / abs(run) if run else float("nan")
+        return percent(self.error, abs(self.simulated.value))

@@ -15,7 +15,6 @@ from crankmbs.digits import error_digits
 from crankmbs.errors import InputError
 from crankmbs.mechanics.geometry import top_position
 from crankmbs.mechanics.knots import repeat
-from crankmbs.mechanics.pressure import PeriodicPressure
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.motion.multibody.beside import initial
 from crankmbs.motion.multibody.forces import Forces
@@ -311,7 +310,7 @@ def _over_angle(train: CrankTrain) -> str:
     """The forces over the cycle angle, of gas and tables: each different one once, and which act on
     each piston; nothing where there are none."""
     scene = train.scene
-    of_each: list[list[tuple[PeriodicPressure | Cycle, float]]] = []
+    of_each: list[list[tuple[Cycle, float]]] = []
     for k, gear in enumerate(scene.running_gear):
         gas = [(each, gear.piston.gas_area or 0.0) for each in (train.pressure or ())[k : k + 1]]
         tables = [force.law.over_angle for force in _on(scene, k)]

@@ -143,15 +143,10 @@ class Nodes:
 
     def _sought(self, values: Array) -> tuple[Index, Index, Array, np.ndarray]:
         """Block, cell and place of the top of each quantity's polynomials; whether it is an end."""
-        count = len(values)
-        top, block = np.full(count, -np.inf), np.zeros(count, np.intp)
-        cell, place, ends = np.zeros(count, np.intp), np.zeros(count), np.zeros(count, bool)
-        for number, part in enumerate(self._blocks):
-            high, k, x, at_end = _highest(part.cells, part.of(values))
-            more = high > top
-            top, block = np.where(more, high, top), np.where(more, number, block)
-            cell, place = np.where(more, k, cell), np.where(more, x, place)
-            ends = np.where(more, at_end, ends)
+        found = [_highest(part.cells, part.of(values)) for part in self._blocks]
+        high, *others = (np.array(each) for each in zip(*found, strict=True))
+        block = np.argmax(high, axis=0)
+        cell, place, ends = (each[block, np.arange(len(values))] for each in others)
         return block, cell, place, ends
 
     def _at(self, block: Index, cell: Index, places: Array) -> Samples:

@@ -86,10 +86,7 @@ def quantities_of(scene: Scene) -> tuple[Quantity, ...]:
     phases: dict[int | None, float] = {
         number: cylinder.phase for number, cylinder in enumerate(scene.cylinders, start=1)
     }
-    quantities = [
-        Quantity(joint.joint, "N", joint.number, phases.get(joint.cylinder), partial(_force, joint))
-        for joint in joints_of(scene)
-    ]
+    quantities = [_of_joint(joint, phases) for joint in joints_of(scene)]
     torques = {torque_of_rods(scene): _torque}
     if not all(load.is_constant for load in scene.torque):
         torques["torque of loads and drive"] = _external_torque
@@ -100,9 +97,8 @@ def quantities_of(scene: Scene) -> tuple[Quantity, ...]:
     ]
     if scene.force:
         quantities += [
-            Quantity("applied force", "N", number, phase, partial(_applied_force, number))
-            for number, phase in phases.items()
-            if number is not None
+            _of_joint(Joint("applied force", ("applied_force",), "cylinder", number), phases)
+            for number in phases
         ]
     ends = {} if scene.gas is None else {"gauge pressure": "gas_pressure"}
     if scene.double_acting:
@@ -192,16 +188,17 @@ def peaks_from(
     return tuple(peaks)
 
 
+def _of_joint(joint: Joint, phases: Mapping[int | None, float]) -> Quantity:
+    phase = phases.get(joint.cylinder)
+    return Quantity(joint.joint, "N", joint.number, phase, partial(_force, joint))
+
+
 def _torque(variables: Mapping[str, Array]) -> Array:
     return np.asarray(variables["crank_torque"].sum(axis=1))
 
 
 def _external_torque(variables: Mapping[str, Array]) -> Array:
     return variables["external_torque"]
-
-
-def _applied_force(cylinder: int, variables: Mapping[str, Array]) -> Array:
-    return np.abs(variables["applied_force"][:, cylinder - 1])
 
 
 def _pressure(name: str, cylinder: int, variables: Mapping[str, Array]) -> Array:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from itertools import cycle
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 from crankmbs.errors import InputError
 from crankmbs.mechanics.cycle_rows import Tables, behind
 from crankmbs.mechanics.geometry import (
+    Shape,
     bottom_position,
     close_loop,
     dead_centres,
@@ -30,17 +31,9 @@ from crankmbs.scene.gas import Gas, tables_of
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import CylinderTable, Table
 
-__all__ = ["Shape", "carried_angle", "carried_over"]
+__all__ = ["carried_angle", "carried_over"]
 
 _TURN = 2.0 * math.pi
-
-
-class Shape(NamedTuple):
-    """What the swept volume over the cycle angle depends on [m]."""
-
-    radius: float
-    rod_length: float
-    offset: float
 
 
 def carried_over(scene: Scene, before: Scene) -> Scene:
@@ -60,7 +53,7 @@ def carried_over(scene: Scene, before: Scene) -> Scene:
     """
     gas = scene.gas
     pairs = zip(before.running_gear, cycle(scene.running_gear), strict=False)
-    shapes_of = [(Shape(*one.shape), Shape(*other.shape)) for one, other in pairs]
+    shapes_of = [(one.shape, other.shape) for one, other in pairs]
     if gas is None or all(one == other for one, other in shapes_of):
         return scene
     if gas.indicator is not None and not tables_of(gas.crank_end):
@@ -85,7 +78,7 @@ def carried_angle(cycle_angle: ArrayLike, before: Shape, after: Shape) -> Array:
     """The cycle angles [rad] at which a machine has swept the same fraction of the same stroke as
     another before at these, shape (...).
 
-    >>> same = Shape(0.046, 0.153, 0.001)
+    >>> same = 0.046, 0.153, 0.001
     >>> f"{carried_angle(1.0, same, same):.12f}"
     '1.000000000000'
     """

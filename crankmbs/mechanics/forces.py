@@ -41,7 +41,6 @@ from crankmbs.numerics.function import Function, named
 from crankmbs.numerics.piecewise import Piecewise
 from crankmbs.scene.force import PistonForce, PythonLaw
 from crankmbs.scene.scene import Scene
-from crankmbs.scene.tables import Table
 from crankmbs.scene.torque import Parts
 
 __all__ = ["OnCrank"]
@@ -57,58 +56,14 @@ class OnCrank:
     force: PistonForce
 
     @property
-    def heading(self) -> str:
-        """Of its table in a file."""
-        return self.force.heading
-
-    @property
-    def called(self) -> str:
-        """Its name; without one its kind in words."""
-        return self.force.called
-
-    @property
-    def lacks(self) -> str | None:
-        """Why it cannot be run again, and the way out; None where it can."""
-        return self.force.lacks
-
-    @property
-    def table_over_time(self) -> Table | None:
-        """Its table, if that must cover the time in which it acts."""
-        return self.force.table_over_time
-
-    @property
-    def after(self) -> float | None:
-        """From when [s]."""
-        return self.force.after
-
-    @property
-    def until(self) -> float | None:
-        """To when [s]."""
-        return self.force.until
-
-    @property
-    def from_speed(self) -> float | None:
-        """From which speed [rad/s]."""
-        return self.force.from_speed
-
-    @property
-    def until_speed(self) -> float | None:
-        """To which speed [rad/s]."""
-        return self.force.until_speed
-
-    @property
-    def has_window(self) -> bool:
-        """Whether it does not act throughout."""
-        return self.force.has_window
+    def given(self) -> PistonForce:
+        """As the scene gives it."""
+        return self.force
 
     @property
     def is_steady(self) -> bool:
         """Whether it is always the same function of angle and speed."""
         return self.force.is_steady
-
-    def check_time(self, t: float) -> None:
-        """Refuse a time [s] at which it is not known."""
-        self.force.check_time(t)
 
     def __call__(self, t: ArrayLike, theta: ArrayLike, omega: ArrayLike) -> Array:
         """Torque [N m] at times [s], crank angles [rad] and speeds [rad/s] of one shape."""
@@ -239,9 +194,9 @@ class _OverAngle:
     def __init__(self, load: OnCrank) -> None:
         self._load, law = load, load.force.law
         self.period = _TURN if law.over_angle is None else law.over_angle.period
-        turns = _TURN * np.arange(round(self.period / _TURN) or 1)
-        rows = np.empty(0) if law.over_angle is None else tiled(law.over_angle, self.period)
-        over_travel = (np.add.outer(turns, travel).ravel() for travel in load.travel_knots)
+        rows = np.empty(0) if law.over_angle is None else law.over_angle.knots[:-1]
+        whole = max(self.period, _TURN)
+        over_travel = (tiled(travel, _TURN, whole) for travel in load.travel_knots)
         cycle_angles = [np.concatenate([travel, rows]) for travel in over_travel]
         inside = load.at_crank(cycle_angles, self.period)
         inside = inside[(inside > KNOT) & (inside < self.period - KNOT)]
@@ -266,11 +221,11 @@ class _OfTime(Function):
         self._load, law = load, load.force.law
         python = law.python or PythonLaw(_nothing)
         period = python.period or _TURN
-        turns, knots = _TURN * np.arange(round(period / math.pi)), []
+        knots = []
         for travel, gear in zip(load.travel_knots, load.scene.running_gear, strict=True):
             centres = dead_centres(*gear.shape) if law.python is not None else ()
             # at a dead centre it may jump with the sense of the velocity
-            every = np.add.outer(turns, np.concatenate([travel, centres])).ravel()
+            every = tiled(np.concatenate([travel, centres]), _TURN, 2.0 * period)
             knots.append(np.concatenate([every, python.angles]))
         angles = load.at_crank(knots, period).tolist()
         times = (*python.times, *(law.over_time.knots if law.over_time else ()))

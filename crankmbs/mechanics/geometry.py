@@ -21,6 +21,7 @@ from crankmbs.numerics.arrays import Array
 __all__ = [
     "Lengths",
     "Loop",
+    "Shape",
     "bottom_position",
     "close_loop",
     "close_loops",
@@ -30,6 +31,10 @@ __all__ = [
     "throw_angles",
     "top_position",
 ]
+
+
+Shape = tuple[float, float, float]
+"""Radius of the throw, length of the rod and offset [m]."""
 
 
 class Loop(NamedTuple):

@@ -16,6 +16,7 @@ from itertools import pairwise
 import numpy as np
 
 from crankmbs.mechanics.geometry import (
+    Shape,
     bottom_position,
     close_loop,
     dead_centres,
@@ -29,7 +30,6 @@ from crankmbs.scene.gas import Gas, Indicator
 __all__ = ["INDICATOR_RTOL", "fit", "indicator_pieces", "relative_volume"]
 
 Stroke = tuple[float, float, Callable[[Array], Array]]
-Shape = tuple[float, float, float]
 
 INDICATOR_RTOL = 1e-9  # of the absolute pressure
 

@@ -10,18 +10,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache, partial
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.interpolate import PPoly
 
 from crankmbs.errors import InputError
 from crankmbs.mechanics.cycle_rows import rows_of, rows_of_table
-from crankmbs.mechanics.geometry import dead_centres
+from crankmbs.mechanics.geometry import Shape, dead_centres
 from crankmbs.mechanics.indicator import INDICATOR_RTOL, fit, indicator_pieces, relative_volume
 from crankmbs.mechanics.knots import KNOT, apart, repeat
-from crankmbs.numerics.arrays import Array, Index
+from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.cycle import Cycle, common_period
 from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.gas import AnyPressure, Gas, Polytrope, tables_of
 from crankmbs.scene.pressure_rows import closing_row, interpolate, overshoot
@@ -45,17 +45,13 @@ _OVERSHOOT = 0.05  # of the range: a sine in rows 45 degrees apart is overshot b
 
 
 @dataclass(frozen=True, eq=False)
-class PeriodicPressure:
-    """Piecewise cubic, periodic in the cycle angle.
+class PeriodicPressure(Cycle):
+    """Pressure difference across the piston [Pa], periodic in the cycle angle.
 
-    knots : shape (n + 1,) [rad], increasing, the last one period above the first
-    coefficients : shape (4, n) [Pa, by descending power of (angle - knots[i]) in rad]
     missed : shape (4, n), alike: what the pieces may be off from the pressure that they stand for;
         None where they are that pressure
     """
 
-    knots: Array
-    coefficients: Array
     missed: Array | None = None
 
     @property
@@ -64,11 +60,6 @@ class PeriodicPressure:
         if self.missed is None:
             return self
         return PeriodicPressure(self.knots, self.coefficients + self.missed)
-
-    @property
-    def period(self) -> float:
-        """Period [rad]."""
-        return float(self.knots[-1] - self.knots[0])
 
     @cached_property
     def peak(self) -> tuple[float, float]:
@@ -85,34 +76,8 @@ class PeriodicPressure:
 
     def on(self, knots: Array) -> PeriodicPressure:
         """The same between knots of another set [rad], in each of which lies one piece."""
-        middle = 0.5 * (knots[:-1] + knots[1:])
-        within = np.mod(middle - self.knots[0], self.period)
-        index = np.searchsorted(self.knots[1:-1] - self.knots[0], within, side="right")
-        behind = within - (self.knots[index] - self.knots[0]) - (middle - knots[:-1])
-        parts = [self.coefficients] if self.missed is None else [self.coefficients, self.missed]
-        return PeriodicPressure(knots, *(_moved(part[:, index], behind) for part in parts))
-
-    def __call__(self, cycle_angle: ArrayLike) -> Array:
-        """Pressure difference across the piston [Pa]; at a step the value after it.
-
-        cycle_angle : shape (...) [rad], any number of periods
-        """
-        first, period, starts = self._layout
-        behind = np.asarray(cycle_angle, dtype=np.float64) - (first - KNOT)
-        behind = behind - period * np.floor(behind / period)
-        index = starts[1:].searchsorted(behind, side="right")
-        return self.piece(index, behind - KNOT - starts.take(index))
-
-    @cached_property
-    def _layout(self) -> tuple[float, float, Array]:
-        """First knot, period, and the first knot of each piece behind that one [rad]."""
-        return float(self.knots[0]), self.period, self.knots[:-1] - self.knots[0]
-
-    def piece(self, index: Index, distance: ArrayLike) -> Array:
-        """Value [Pa] of the pieces ``index`` at ``distance`` [rad] behind their first knot."""
-        x = np.asarray(distance, dtype=np.float64)
-        a, b, c, d = (power.take(index) for power in self.coefficients)
-        return np.asarray(((a * x + b) * x + c) * x + d)
+        missed = None if self.missed is None else Cycle(self.knots, self.missed).cubics(knots)
+        return PeriodicPressure(knots, self.cubics(knots), missed)
 
 
 def pressures_at(pressures: Sequence[PeriodicPressure], cycle_angles: Array) -> Array:
@@ -130,14 +95,6 @@ def pressures_at(pressures: Sequence[PeriodicPressure], cycle_angles: Array) -> 
         rows = [k for k, pressure in enumerate(pressures) if pressure is each]
         values[rows] = each(cycle_angles[rows])
     return values
-
-
-def _moved(cubics: Array, x: Array) -> Array:
-    """Cubics by descending power in the angle behind a point farther on by x."""
-    a, b, c, d = cubics
-    return np.array(
-        [a, b + 3.0 * a * x, c + (2.0 * b + 3.0 * a * x) * x, d + (c + (b + a * x) * x) * x]
-    )
 
 
 def combustion_of(
@@ -164,8 +121,7 @@ def _on_all_knots(
     one: PeriodicPressure, other: PeriodicPressure
 ) -> tuple[PeriodicPressure, PeriodicPressure]:
     """Both on the knots of both, over the least common multiple of their periods."""
-    turn = 2.0 * math.pi
-    period = math.lcm(*(round(each.period / turn) for each in (one, other))) * turn
+    period = common_period(each.period for each in (one, other))
     first = float(one.knots[0])
     inner = [repeat(p.knots[:-1], p.period, first, first + period) for p in (one, other)]
     knots = apart(np.concatenate([[first], *inner]))
@@ -204,9 +160,8 @@ def motored_of(scene: Scene) -> tuple[PeriodicPressure, ...]:
     assert gas.motored is not None
     if not isinstance(gas.motored, Polytrope):
         return _of_source(scene, gas, gas.motored)
-    of_each = [(one, gear.shape) for one, gear in zip(fired, scene.running_gear, strict=True)]
-    once = {each: _continued(gas, gas.motored, *each) for each in dict.fromkeys(of_each)}
-    return tuple(once[each] for each in of_each)
+    continued = cache(partial(_continued, gas, gas.motored))
+    return tuple(map(continued, fired, (gear.shape for gear in scene.running_gear)))
 
 
 def crank_ends_of(scene: Scene) -> tuple[PeriodicPressure, ...] | None:
@@ -223,12 +178,14 @@ def crank_ends_of(scene: Scene) -> tuple[PeriodicPressure, ...] | None:
 
 def _of_indicator(scene: Scene, gas: Gas, *, fires: bool) -> tuple[PeriodicPressure, ...]:
     """That of each cylinder over its own volume; cylinders of one shape share it."""
-    once = {}
-    for shape in {gear.shape for gear in scene.running_gear}:
+
+    @cache
+    def of_shape(shape: Shape) -> PeriodicPressure:
         knots, coefficients = indicator_pieces(gas, shape, fires=fires)
         absolute = coefficients + np.array([[0.0], [0.0], [0.0], [gas.ambient or 0.0]])
-        once[shape] = PeriodicPressure(knots, coefficients, INDICATOR_RTOL * absolute)
-    return tuple(once[gear.shape] for gear in scene.running_gear)
+        return PeriodicPressure(knots, coefficients, INDICATOR_RTOL * absolute)
+
+    return tuple(of_shape(gear.shape) for gear in scene.running_gear)
 
 
 def _of_source(scene: Scene, gas: Gas, source: AnyPressure) -> tuple[PeriodicPressure, ...]:
@@ -244,7 +201,7 @@ def _of_source(scene: Scene, gas: Gas, source: AnyPressure) -> tuple[PeriodicPre
 
 
 def _continued(
-    gas: Gas, polytrope: Polytrope, fired: PeriodicPressure, shape: tuple[float, float, float]
+    gas: Gas, polytrope: Polytrope, fired: PeriodicPressure, shape: Shape
 ) -> PeriodicPressure:
     """A fired pressure of a cylinder of this shape, from ``closes`` to the true bottom dead centre
     a polytrope in its place, in every cycle.
@@ -278,7 +235,7 @@ def _continued(
         inner = repeat(fired.knots[:-1], fired.period, at + end - begin, at + gas.period)
         rest = np.concatenate([[at + end - begin], inner, [at + gas.period]])
         knots += [left, rest[:-1]]
-        columns += [cubics, fired.on(rest).coefficients]
+        columns += [cubics, fired.cubics(rest)]
     coefficients = np.concatenate(columns, axis=1)
     return PeriodicPressure(np.append(np.concatenate(knots), begin + fired.period), coefficients)
 

@@ -139,11 +139,11 @@ class AngleLaw:
             wide = np.abs(fine - coarse) > _SAME * fine * largest[piece] / slowest
             if not wide.any():
                 break
-            parts = 1 + wide.astype(np.intp)
-            piece, width = np.repeat(piece, parts), np.repeat(width / parts, parts)
-            second = np.append(False, piece[1:] == piece[:-1]) & np.repeat(wide, parts)
-            second &= np.arange(len(piece)) > np.repeat(np.cumsum(parts) - parts, parts)
-            lead = np.repeat(lead, parts) + np.where(second, width, 0.0)
+            width = np.where(wide, 0.5 * width, width)
+            piece, behind = np.append(piece, piece[wide]), lead[wide] + width[wide]
+            lead, width = np.append(lead, behind), np.append(width, width[wide])
+            order = np.lexsort((lead, piece))
+            piece, lead, width = piece[order], lead[order], width[order]
         return self.panels._replace(times=fine)
 
 

@@ -155,7 +155,7 @@ def branch_of(
     low, high = _beside(speeds, omega, rising=rising)
     for number, load in acting(torques, phases):
         try:
-            load.check_time(t)
+            load.given.check_time(t)
         except InputError as error:
             raise InputError(f"{place_of(torques, number)}.{error}") from None
         over_time, over_speed, _, function = load.parts

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 from scipy.interpolate import PPoly
@@ -107,8 +107,7 @@ class CrankTrain:
     def rubs(self) -> bool:
         """Whether something resists either sense of rotation, or with the speed: friction, or
         forces that change on the way back or with the piston's velocity."""
-        laws = (force.law for force in self.scene.force)
-        return self.scene.friction is not None or any(law.switches or law.viscous for law in laws)
+        return self.scene.friction is not None or self.drags or self.sticks
 
     @cached_property
     def drags(self) -> bool:
@@ -155,9 +154,7 @@ def crank_train(scene: Scene) -> CrankTrain:
     motored = motored_of(scene)
     if ends is not None:
         motored = _net(scene, motored, ends)
-    once = {pair: combustion_of(*pair) for pair in dict.fromkeys(zip(fired, motored, strict=True))}
-    both = [once[pair] for pair in zip(fired, motored, strict=True)]
-    without, more = (tuple(parts) for parts in zip(*both, strict=True))
+    without, more = zip(*map(cache(combustion_of), fired, motored), strict=True)
     start = scene.start
     begun = (start.angle, start.speed) if start else _beginning(scene)
     return CrankTrain(scene, without, more, FuelLaw(scene, scene.fuel, begun), ends)
@@ -168,9 +165,7 @@ def _net(
 ) -> tuple[PeriodicPressure, ...]:
     """What pushes each piston; cylinders of one pair of pressures and areas share it."""
     shares = (gear.piston.crank_end_share for gear in scene.running_gear)
-    of_each = list(zip(heads, ends, shares, strict=True))
-    once = {one: net_of(*one) for one in dict.fromkeys(of_each)}
-    return tuple(once[one] for one in of_each)
+    return tuple(map(cache(net_of), heads, ends, shares))
 
 
 def _beginning(scene: Scene) -> tuple[float, float]:
@@ -195,7 +190,7 @@ def knots_over_angle(train: CrankTrain) -> Array:
     period = train.period
     parts = [load.parts for load in train.loads]
     cycles = [part.over_angle for part in parts if part.over_angle is not None]
-    knots = [np.mod(tiled(cycle, period), period) for cycle in cycles]
+    knots = [tiled(cycle.knots[:-1], cycle.period, period) for cycle in cycles]
     knots += [part.function.angles_in(period) for part in parts if part.function is not None]
     return np.unique(np.concatenate([np.empty(0), *knots]))
 
@@ -207,7 +202,6 @@ def _near_folds(train: CrankTrain) -> Array:
     the real angles: in wider cells two rules err alike, if they see it at all.
     """
     period, marks = train.period, [np.empty(0)]
-    turns = 2.0 * math.pi * np.arange(round(period / (2.0 * math.pi)))
     cylinders = zip(train.scene.cylinders, train.scene.running_gear, strict=True)
     for cylinder, (radius, length, offset) in ((c, gear.shape) for c, gear in cylinders):
         for fold, gap in ((0.5, length - radius + offset), (-0.5, length - radius - offset)):
@@ -215,8 +209,8 @@ def _near_folds(train: CrankTrain) -> Array:
             if 0.0 < width < _WIDE:
                 beside = width * 2.0 ** np.arange(math.ceil(math.log2(_WIDE / width)))
                 around = fold * math.pi + np.concatenate([-beside, [0.0], beside])
-                marks.append(np.add.outer(turns - cylinder.phase, around).ravel())
-    return np.asarray(np.mod(np.concatenate(marks), period))
+                marks.append(tiled(around - cylinder.phase, 2.0 * math.pi, period))
+    return np.concatenate(marks)
 
 
 def edges_over_angle(train: CrankTrain) -> Array:
@@ -246,7 +240,7 @@ def merged_knots(train: CrankTrain, knots: Sequence[Array]) -> Array:
     for each over the period of its pressure."""
     period = train.period
     angles = [
-        np.mod(_repeated(each, pressure.period, period) - c.phase, period)
+        tiled(each - c.phase, pressure.period, period)
         for each, pressure, c in zip(
             knots, train.pressure or (), train.scene.cylinders, strict=False
         )
@@ -255,12 +249,6 @@ def merged_knots(train: CrankTrain, knots: Sequence[Array]) -> Array:
     if len(merged) and period - merged[-1] + merged[0] <= KNOT:
         merged = merged[:-1]
     return merged
-
-
-def _repeated(knots: Array, after: float, period: float) -> Array:
-    """Knots of one period of their own, in as many as make the whole one."""
-    turns = np.arange(round(period / after))
-    return np.asarray((after * turns[:, None] + knots).ravel())
 
 
 def friction_knots(train: CrankTrain) -> Array:
@@ -278,15 +266,14 @@ def friction_knots(train: CrankTrain) -> Array:
     scene = train.scene
     if scene.friction is None and not train.sticks:
         return np.empty(0)
-    turns = 2.0 * math.pi * np.arange(round(train.period / (2.0 * math.pi)))
     cylinders = zip(scene.cylinders, scene.running_gear, strict=True)
     angles = [
-        np.add.outer(turns, np.array(dead_centres(*gear.shape)) - c.phase).ravel()
+        tiled(np.array(dead_centres(*gear.shape)) - c.phase, 2.0 * math.pi, train.period)
         for c, gear in cylinders
     ]
     if train.combustion is None:
         angles.append(sign_changes(train))
-    return apart(np.mod(np.concatenate(angles), train.period))
+    return apart(np.concatenate(angles))
 
 
 def sign_changes(train: CrankTrain, shares: Sequence[float] = ()) -> Array:
@@ -309,8 +296,7 @@ def sign_changes(train: CrankTrain, shares: Sequence[float] = ()) -> Array:
             PeriodicPressure(p.knots, p.coefficients + share * more.coefficients)
             for p, more, share in zip(pressures, train.combustion, shares, strict=True)
         ]
-    once = {each: _roots(each) for each in dict.fromkeys(pressures)}
-    return merged_knots(train, [once[each] for each in pressures])
+    return merged_knots(train, list(map(cache(_roots), pressures)))
 
 
 def _roots(pressure: PeriodicPressure) -> Array:

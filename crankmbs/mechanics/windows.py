@@ -44,7 +44,7 @@ def first_phases(torques: tuple[Acting, ...], omega: float) -> Phases:
     >>> first_phases((Constant(torque=2.0, after=1.0),), 5.0)
     (<Phase.DUE: 1>,)
     """
-    if not any(load.has_window for load in torques):
+    if not any(load.given.has_window for load in torques):
         return ()
     return later_phases(torques, (Phase.WAITING,) * len(torques), 0.0, omega)
 
@@ -52,11 +52,11 @@ def first_phases(torques: tuple[Acting, ...], omega: float) -> Phases:
 def later_phases(torques: tuple[Acting, ...], phases: Phases, t: float, omega: float) -> Phases:
     """The phases after landing at a time [s] and a speed [rad/s], which must be met exactly."""
     return tuple(
-        _later(load, phase, t, omega) for load, phase in zip(torques, phases, strict=False)
+        _later(load.given, phase, t, omega) for load, phase in zip(torques, phases, strict=False)
     )
 
 
-def _later(load: Acting, phase: Phase, t: float, omega: float) -> Phase:
+def _later(load: Windowed, phase: Phase, t: float, omega: float) -> Phase:
     if load.until is not None and t >= load.until:
         return Phase.OVER
     if phase is Phase.ACTING and omega == load.until_speed:
@@ -80,8 +80,8 @@ def place_of(loads: tuple[Acting | Windowed, ...], number: int) -> str:
     >>> place_of((Constant(torque=2.0), Constant(torque=1.0)), 2)
     'torque[2]'
     """
-    heading = loads[number - 1].heading
-    return f"{heading}[{sum(load.heading == heading for load in loads[:number])}]"
+    headings = [load.given.heading for load in loads[:number]]
+    return f"{headings[-1]}[{headings.count(headings[-1])}]"
 
 
 def phase_ends(
@@ -90,7 +90,7 @@ def phase_ends(
     """Times [s] and speeds [rad/s] at which a phase may end."""
     times: list[float] = []
     speeds: list[float] = []
-    for load, phase in zip(torques, phases, strict=False):
+    for load, phase in zip((each.given for each in torques), phases, strict=False):
         if phase is Phase.WAITING and load.from_speed is not None:
             speeds.append(load.from_speed)
         if phase is Phase.DUE and load.after is not None:

@@ -132,7 +132,8 @@ def _apart(train: CrankTrain, law: SpeedLaw, first: State, last: State) -> Itera
     begins or ends, and the last."""
     count = math.ceil(abs(last.theta - first.theta) / (_TURNS * train.scene.period))
     angles = np.linspace(first.theta, last.theta, count + 1)[1:-1]
-    ends = {end for load in train.loads for end in (load.after, load.until) if end is not None}
+    windows = [load.given for load in train.loads]
+    ends = {end for one in windows for end in (one.after, one.until) if end is not None}
     inside = [end for end in ends if first.time < end < last.time]
     for time in np.unique([*law.time_at(angles, first.time, last.time), *inside]).tolist():
         theta, omega, _ = law.at_time(time)

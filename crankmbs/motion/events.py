@@ -68,7 +68,7 @@ class Log:
     def start(self, state: State) -> None:
         """What is decided at the start."""
         before = tuple(
-            Phase.WAITING if load.has_window else phase
+            Phase.WAITING if load.given.has_window else phase
             for load, phase in zip(self._train.loads, state.mode.loads, strict=False)
         )
         self._change(state.mode._replace(loads=before, firing=None), state, everywhere=True)

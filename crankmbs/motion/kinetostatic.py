@@ -108,7 +108,10 @@ def _applied(train: CrankTrain, time: Array, theta: Array, omega: Array) -> dict
         return {}
     total = np.zeros((len(time), len(train.scene.cylinders)))
     for push in train.pushes:
-        begin, end = push.after or 0.0, math.inf if push.until is None else push.until
+        begin, end = (
+            push.force.after or 0.0,
+            math.inf if push.force.until is None else push.force.until,
+        )
         acts = (time >= begin) & (time < end)
         motion = time[acts], theta[acts], omega[acts]
         total[acts] += push.forces(*motion, np.sign(motion[2]))

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from crankmbs.mechanics.windows import Phase
+from crankmbs.mechanics.windows import Phase, place_of
 from crankmbs.motion.base import Samples
 from crankmbs.motion.mode import Mode
 from crankmbs.numerics.arrays import Array
@@ -45,12 +45,9 @@ def remarks(scene: Scene, mode: Mode, samples: Samples) -> tuple[str, ...]:
 
 
 def _windows(scene: Scene, mode: Mode, end: float) -> Iterator[str]:
-    numbered = [
-        (f"{load.heading}[{number}]", load)
-        for loads in (scene.torque, scene.force)
-        for number, load in enumerate(loads, start=1)
-    ]
-    for (place, load), phase in zip(numbered, mode.loads, strict=False):
+    loads = *scene.torque, *scene.force
+    for number, (load, phase) in enumerate(zip(loads, mode.loads, strict=False), start=1):
+        place = place_of(loads, number)
         if phase is Phase.ACTING and load.until_speed is not None:
             yield (
                 f"{place}: until_speed, {load.until_speed / RPM:.6g} rpm, was not met, "

@@ -20,7 +20,7 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import Samples, State
 from crankmbs.motion.cells import Acting, Cells
 from crankmbs.numerics.arrays import Array, Index
-from crankmbs.numerics.periodic import one_period
+from crankmbs.numerics.periodic import period_of
 
 __all__ = [
     "MOTION",
@@ -124,7 +124,7 @@ def applied_forces(
 def _reduced(train: CrankTrain, angle: Array, shares: Array | None) -> tuple[Array, Array, Array]:
     """J, dJ/dtheta and the torque of gas and weights, shape (p,), once for angles that come
     again."""
-    once, which = one_period(angle, train.repeats)
+    once, which = period_of(angle, train.repeats)[:2]
     inertia, slope, torque = (part[which] for part in reduce(train, once))
     if shares is not None:
         torque = torque + (fired_torque(train, once)[which] * shares).sum(axis=1)

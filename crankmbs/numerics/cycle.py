@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import PPoly
 
-from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.arrays import Array, Index
 
 __all__ = ["NEAR", "Cycle", "Periodic", "common_period", "summed", "tiled"]
 
@@ -65,11 +65,33 @@ class Cycle:
         >>> Cycle(np.array([0.0, 1.0]), np.array([[0.0], [0.0], [2.0], [5.0]]))([0.5, 3.25])
         array([6. , 5.5])
         """
-        ahead = np.mod(np.asarray(angle, dtype=np.float64) - self.knots[0] + NEAR, self.period)
-        k = np.searchsorted(self.knots[1:-1] - self.knots[0], ahead, side="right")
-        x = ahead - NEAR - (self.knots[k] - self.knots[0])
-        a, b, c, d = self.coefficients[:, k]
+        first, period, starts = self._layout
+        behind = np.asarray(angle, dtype=np.float64) - (first - NEAR)
+        behind = behind - period * np.floor(behind / period)
+        index = starts[1:].searchsorted(behind, side="right")
+        return self.piece(index, behind - NEAR - starts.take(index))
+
+    @cached_property
+    def _layout(self) -> tuple[float, float, Array]:
+        """First knot, period, and the first knot of each piece behind that one [rad]."""
+        return float(self.knots[0]), self.period, self.knots[:-1] - self.knots[0]
+
+    def piece(self, index: Index, distance: ArrayLike) -> Array:
+        """Value of the pieces ``index`` at ``distance`` [rad] behind their first knot."""
+        x = np.asarray(distance, dtype=np.float64)
+        a, b, c, d = (power.take(index) for power in self.coefficients)
         return np.asarray(((a * x + b) * x + c) * x + d)
+
+    def cubics(self, knots: Array) -> Array:
+        """The coefficients between knots of another set [rad], in each of which lies one piece."""
+        first, period, starts = self._layout
+        middle = 0.5 * (knots[:-1] + knots[1:])
+        within = np.mod(middle - first, period)
+        index = starts[1:].searchsorted(within, side="right")
+        x = within - starts[index] - (middle - knots[:-1])
+        a, b, c, d = self.coefficients[:, index]
+        slope, square = c + (2.0 * b + 3.0 * a * x) * x, b + 3.0 * a * x
+        return np.array([a, square, slope, d + (c + (b + a * x) * x) * x])
 
     def by_number(self, low: float = -math.inf, high: float = math.inf) -> Callable[[float], float]:
         """The same from number to number [rad], fifty times faster for one; below and above two
@@ -94,7 +116,7 @@ class Cycle:
     @cached_property
     def _numbers(self) -> tuple[list[float], list[list[float]]]:
         """Where its pieces start above the first knot [rad], and their coefficients."""
-        return (self.knots[:-1] - self.knots[0]).tolist(), self.coefficients.T.tolist()
+        return self._layout[2].tolist(), self.coefficients.T.tolist()
 
     def integral(self, angle: ArrayLike) -> Array:
         """Integral over the angle from the first knot to angles [rad] of any shape.
@@ -132,19 +154,11 @@ def summed(cycles: list[Cycle], period: float) -> Cycle | None:
     """The sum over a common period [rad], from angle 0 on; None of none."""
     if not cycles:
         return None
-    inside = [np.mod(tiled(cycle, period), period) for cycle in cycles]
+    inside = [tiled(cycle.knots[:-1], cycle.period, period) for cycle in cycles]
     knots = np.unique(np.concatenate([[0.0], *inside]))
     knots = knots[np.append(True, np.diff(knots) > NEAR) & (knots < period - NEAR)]
     knots = np.append(knots, period)
-    total = np.zeros((4, len(knots) - 1))
-    for cycle in cycles:
-        middle = np.mod(0.5 * (knots[1:] + knots[:-1]) - cycle.knots[0], cycle.period)
-        k = np.searchsorted(cycle.knots[1:-1] - cycle.knots[0], middle, side="right")
-        x = middle - (cycle.knots[k] - cycle.knots[0]) - 0.5 * np.diff(knots)  # where it begins
-        a, b, c, d = cycle.coefficients[:, k]
-        slope, square = (3.0 * a * x + 2.0 * b) * x + c, 3.0 * a * x + b
-        total += np.array([a, square, slope, ((a * x + b) * x + c) * x + d])
-    return Cycle(knots, total)
+    return Cycle(knots, np.sum([cycle.cubics(knots) for cycle in cycles], axis=0))
 
 
 def common_period(periods: Iterable[float]) -> float:
@@ -156,7 +170,11 @@ def common_period(periods: Iterable[float]) -> float:
     return math.lcm(*(round(period / math.pi) for period in periods)) * math.pi
 
 
-def tiled(cycle: Periodic, period: float) -> Array:
-    """The knots of a cycle repeated over a period of which its own is a part [rad]."""
-    turns = np.arange(round(period / cycle.period))[:, None]
-    return np.asarray((cycle.knots[:-1] + turns * cycle.period).ravel())
+def tiled(knots: Array, part: float, period: float) -> Array:
+    """Knots that come again after a part of a period, all of those in [0, period) [rad].
+
+    >>> tiled(np.array([1.0, -0.5]), 2.0, 4.0)
+    array([1. , 3.5, 3. , 1.5])
+    """
+    turns = part * np.arange(round(period / part))[:, None]
+    return np.asarray(np.mod(turns + knots, period).ravel())

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.cycle import tiled
 
 __all__ = ["Function", "named"]
 
@@ -79,8 +80,7 @@ class Function:
     def angles_in(self, period: float) -> Array:
         """Its angles repeated over a period [rad] of which its own is a part."""
         part = self.period or 2.0 * math.pi
-        turns = part * np.arange(round(period / part))[:, None]
-        return np.asarray((np.array(self.angles) % part + turns).ravel())
+        return tiled(np.array(self.angles), part, period)
 
     def number(self, t: float, theta: float, omega: float) -> float:
         """Its value at one time [s], angle [rad] and speed [rad/s]; NaN where it has none."""

@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crankmbs.numerics.arrays import Array, Index
 
-__all__ = ["Period", "one_period", "period_of", "single"]
+__all__ = ["Period", "period_of", "single"]
 
 
 Term = tuple[Array, Array | None]
@@ -106,8 +105,3 @@ def period_of(theta: Array, period: float) -> Period:
     which[repeating:] = np.arange(count, count + n - repeating)
     angles = np.concatenate([theta[:count], theta[repeating:]])
     return Period(angles, which, count, repeating)
-
-
-def one_period(theta: Array, period: float) -> tuple[Array, NDArray[np.intp]]:
-    """The angles of one period, and which of them every sample is at: `period_of`."""
-    return period_of(theta, period)[:2]

@@ -107,20 +107,14 @@ class Piecewise:
     @cached_property
     def largest(self) -> float:
         """The largest value, without its sign, at the knots; without any, at 0."""
-        knots, rows = self.arrays
-        sides = [(row[:, 0] + (row[:, 1] + row[:, 2] * knots) * knots) for row in _sides(rows)]
-        values = np.concatenate(sides) if self.knots else rows[:, 0]
-        return float(np.max(np.abs(values)))
+        at = self.arrays[0] if self.knots else np.zeros(1)
+        before = self.of_piece(np.nextafter(at, -math.inf), at)
+        return float(np.max(np.abs([self(at), before])))
 
     @cached_property
     def is_constant(self) -> bool:
         """Whether every piece is, though they may differ."""
         return not self.arrays[1][:, 1:].any()
-
-
-def _sides(rows: Array) -> tuple[Array, Array]:
-    """The pieces before and after each knot."""
-    return rows[:-1], rows[1:]
 
 
 def total(functions: list[Piecewise], low: float, high: float) -> tuple[Array, Array]:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from crankmbs.mechanics.train import crank_train
 from crankmbs.mechanics.variables import Variable
 from crankmbs.motion.account import Account, Kind, Rows
+from crankmbs.motion.cycles import Cycles
 from crankmbs.motion.labels import CYCLES, EVENTS, Table, dims_of
 from crankmbs.numerics.arrays import Array, Labelled
 from crankmbs.scene.scene import Scene
@@ -39,17 +41,13 @@ class _Stored:
             for name, values in rows.columns.items()
         }
 
-    def read(self, data: xr.Dataset, names: Iterable[str], left_out: int) -> Rows:
-        """The rows with these columns that a file holds; no row where it holds none."""
-        columns: dict[str, Array] = {}
-        errors = dict.fromkeys(names, 0.0)
-        for name in errors:
-            stored = f"{self.rows}_{name}"
-            if self.rows in data.dims:
-                columns[name] = data[stored].values
-                errors[name] = float(data[stored].attrs["error_estimate"])
-            else:
-                columns[name] = np.empty([0, *(data.sizes[d] for d in self.dims(name)[1:])])
+    def read(self, data: xr.Dataset, empty: Mapping[str, Array], left_out: int) -> Rows:
+        """The rows that a file holds, with the columns of empty ones; these where it has none."""
+        if self.rows not in data.dims:
+            return Rows(empty, dict.fromkeys(empty, 0.0), left_out)
+        stored = {name: data[f"{self.rows}_{name}"] for name in empty}
+        columns = {name: column.values for name, column in stored.items()}
+        errors = {name: float(column.attrs["error_estimate"]) for name, column in stored.items()}
         return Rows(columns, errors, left_out)
 
 
@@ -90,13 +88,12 @@ def account_in(
     ------
     ValueError, KeyError : it is no account of this scene
     """
-    names = [name for name in _NUMBERED if _has(scene, name)]
+    none = dict.fromkeys(EVENTS, np.empty(0)), Cycles(crank_train(scene), 0.0).rows(0).columns
     counts = dict(zip(_LOADS, (len(scene.torque), len(scene.force)), strict=True))
     if any(data.sizes.get(of, count) != count for of, count in counts.items()):
         raise ValueError("loads of another scene")
-    sizes = data.assign_coords({of: np.arange(count) for of, count in counts.items()})
     account = Account(
-        _EVENTS.read(data, EVENTS, left_out[0]), _CYCLES.read(sizes, names, left_out[1])
+        _EVENTS.read(data, none[0], left_out[0]), _CYCLES.read(data, none[1], left_out[1])
     )
     of_loads = (Kind.LOAD_ON, Kind.LOAD_OFF)
     most = {Kind.FUEL: len(scene.cylinders), **dict.fromkeys(of_loads, sum(counts.values()))}
@@ -105,20 +102,6 @@ def account_in(
         if Kind(code) in most and number not in range(1, most[Kind(code)] + 1):
             raise ValueError(f"an event of number {number}")
     return account, data.drop_dims(["event", "cycle", *_LOADS], errors="ignore")
-
-
-def _has(scene: Scene, name: str) -> bool:
-    """Whether the cycles of a scene have a variable."""
-    return {
-        "gas_work": scene.gas is not None,
-        "imep": scene.gas is not None,
-        "imep_crank_end": scene.double_acting,
-        "fuel": scene.fuel is not None,
-        "friction_work": scene.friction is not None,
-        "load_work": bool(scene.torque),
-        "force_work": bool(scene.force),
-        "drive_work": scene.motion is not None,
-    }.get(name, True)
 
 
 def write_rows(table: Table, file: Path) -> None:

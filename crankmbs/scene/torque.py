@@ -20,7 +20,6 @@ from crankmbs.numerics.cycle import Cycle, Periodic
 from crankmbs.numerics.function import Function
 from crankmbs.numerics.piecewise import Piecewise
 from crankmbs.scene.schema import part
-from crankmbs.scene.tables import Table
 from crankmbs.scene.windowed import Windowed, one_of_kinds
 
 __all__ = ["Acting", "AnyTorque", "Parts", "Torque"]
@@ -59,40 +58,8 @@ class Acting(Protocol):
     """What acts on the crank, in a window."""
 
     @property
-    def heading(self) -> str:
-        """Of its table in a file."""
-
-    @property
-    def called(self) -> str:
-        """Its name; without one its kind in words."""
-
-    @property
-    def lacks(self) -> str | None:
-        """Why it cannot be run again, and the way out; None where it can."""
-
-    @property
-    def table_over_time(self) -> Table | None:
-        """Its table, if that must cover the time in which it acts."""
-
-    @property
-    def after(self) -> float | None:
-        """From when [s]."""
-
-    @property
-    def until(self) -> float | None:
-        """To when [s]."""
-
-    @property
-    def from_speed(self) -> float | None:
-        """From which speed [rad/s]."""
-
-    @property
-    def until_speed(self) -> float | None:
-        """To which speed [rad/s]."""
-
-    @property
-    def has_window(self) -> bool:
-        """Whether it does not act throughout."""
+    def given(self) -> Windowed:
+        """As the scene gives it, with its window."""
 
     @property
     def is_steady(self) -> bool:
@@ -101,9 +68,6 @@ class Acting(Protocol):
     @property
     def parts(self) -> Parts[Periodic]:
         """What it is the sum of."""
-
-    def check_time(self, t: float) -> None:
-        """Refuse a time [s] at which it is not known."""
 
     def __call__(self, t: ArrayLike, theta: ArrayLike, omega: ArrayLike) -> Array:
         """Torque [N m] at times [s], crank angles [rad] and speeds [rad/s] of one shape."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Annotated, Any, ClassVar, TypeVar
+from typing import Annotated, Any, ClassVar, Self, TypeVar
 
 from annotated_types import Ge
 from pydantic import Strict, TypeAdapter, ValidationError, ValidationInfo
@@ -63,6 +63,11 @@ class Windowed(ABC):
         bounds = [f"{word} {t:.6g} s" for word, t in times if t is not None]
         bounds += [f"{word} {v / RPM:.6g} rpm" for word, v in speeds if v is not None]
         return "".join(f", {bound}" for bound in bounds)
+
+    @property
+    def given(self) -> Self:
+        """Itself, as a scene gives it."""
+        return self
 
     @property
     def has_window(self) -> bool:

@@ -164,7 +164,7 @@ class Free:
     def _known(self, state: State) -> State:
         """A state at the very end of a load's table over time an instant before it."""
         loads = acting(self._train.loads, state.mode.loads)
-        tables = [load.table_over_time for _, load in loads]
+        tables = [load.given.table_over_time for _, load in loads]
         end = min((float(table.x[-1]) for table in tables if table), default=math.inf)
         if state.time < end:
             return state
