@@ -366,14 +366,14 @@ def grouped(items: Iterable[T], alike: Callable[[T, T], bool]) -> list[list[T]]:
     return groups
 
 
-def whose(cylinders: list[int]) -> str:
-    """Legend entry of the cylinders of one curve, counted from 0.
+def whose(group: list[int], part: str = "cylinder") -> str:
+    """Legend entry of the cylinders, or other parts, of one curve, counted from 0.
 
     >>> whose([0, 3])
     'cylinders 1, 4'
     """
-    numbers = ", ".join(str(k + 1) for k in cylinders)
-    return f"cylinder{'s' if len(cylinders) > 1 else ''} {numbers}"
+    numbers = ", ".join(str(k + 1) for k in group)
+    return f"{part}{'s' * (len(group) > 1)} {numbers}"
 
 
 def _seen(panel: Array) -> float:
