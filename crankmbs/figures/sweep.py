@@ -69,7 +69,6 @@ class _Axis(NamedTuple):
         if self.words:
             axis.set_ticks(self.at, self.words)
         elif self.log:
-            getattr(axis.axes, f"set_{axis.axis_name}scale")("log")
             logarithmic(axis)
         else:
             axis.set_major_locator(MaxNLocator(6, steps=_ROUND))
