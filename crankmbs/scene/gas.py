@@ -12,7 +12,14 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from annotated_types import Ge, Gt, Le
-from pydantic import AfterValidator, BeforeValidator, Strict, ValidationInfo
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    StrictBool,
+    StrictInt,
+    StrictStr,
+    ValidationInfo,
+)
 
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.cycles import mean_cycle
@@ -176,19 +183,19 @@ class Gas:
     decimal sign, how many lines to leave out at the beginning. They are None again once it is read.
     """
 
-    columns: Annotated[str, Strict()] | None = None
-    angle: Annotated[str, Strict()] | None = None
-    separator: Annotated[str, Strict(), AfterValidator(sign_of)] | None = None
+    columns: StrictStr | None = None
+    angle: StrictStr | None = None
+    separator: Annotated[StrictStr, AfterValidator(sign_of)] | None = None
     decimal: Literal[".", ","] | None = None
-    skip: Annotated[int, Strict(), Ge(0)] | None = None
+    skip: Annotated[StrictInt, Ge(0)] | None = None
     stroke: Literal[2, 4] = 4
     pressure: PressureSource | None = None
     indicator: Indicator | None = None
-    absolute: Annotated[bool, Strict()] = True
+    absolute: StrictBool = True
     ambient: Pressure | None = None
     zero: Literal["gas_exchange_tdc", "firing_tdc"] = "gas_exchange_tdc"
     interpolation: Literal["pchip", "linear", "cubic", "step"] = "pchip"
-    aligned: Annotated[bool, Strict()] = False
+    aligned: StrictBool = False
     cycles: Literal["mean", "sequence"] | None = None
     closing: Annotated[Float, Ge(0), si("pressure")] | None = None
     motored: MotoredSource | None = None

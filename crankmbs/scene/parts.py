@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import Annotated, Any, Literal, NamedTuple
 
 from annotated_types import Ge, Gt, Le, Len
-from pydantic import Discriminator, Strict, Tag
+from pydantic import Discriminator, StrictInt, Tag
 
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.schema import Float, part, si
@@ -197,7 +197,7 @@ class Cylinder:
     phase: Angle = 0.0
     bank: Angle = 0.0
     position: Distance | None = None
-    throw: Annotated[int, Strict(), Ge(1)] | None = None
+    throw: Annotated[StrictInt, Ge(1)] | None = None
     radius: Length | None = None
     rod: OwnRod | None = None
     piston: OwnPiston | None = None
@@ -232,7 +232,7 @@ class Layout:
     their numbers.
     """
 
-    firing_order: Annotated[tuple[Annotated[int, Strict()], ...], Len(1)] | None = None
+    firing_order: Annotated[tuple[StrictInt, ...], Len(1)] | None = None
     cylinders: Annotated[tuple[Cylinder, ...], Len(1)] | None = None
     spacing: Length | None = None
 

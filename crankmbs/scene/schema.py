@@ -13,11 +13,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from numbers import Real
 from pathlib import Path
-from typing import Annotated, Any, TypeVar, dataclass_transform
+from typing import Any, TypeVar, dataclass_transform
 
 import numpy as np
 import pydantic
-from pydantic import BeforeValidator, ConfigDict, Strict, ValidationError, ValidationInfo
+from pydantic import BeforeValidator, ConfigDict, StrictFloat, ValidationError, ValidationInfo
 
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.sentences import sentence
@@ -47,7 +47,7 @@ _CONFIG = ConfigDict(
 _WITH_UNIT = "one number and one unit,"
 
 SAVED = {"saved": True}  # validation context of a dumped scene: it has its tables in itself
-Float = Annotated[float, Strict()]  # lax mode would take true as 1.0 and "3" as 3.0
+Float = StrictFloat  # lax mode would take true as 1.0 and "3" as 3.0
 
 
 @dataclass_transform(kw_only_default=True, frozen_default=True)

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Annotated, Any, ClassVar, TypeVar
 
 from annotated_types import Ge
-from pydantic import Strict, TypeAdapter, ValidationError, ValidationInfo
+from pydantic import StrictStr, TypeAdapter, ValidationError, ValidationInfo
 
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.schema import SAVED, Float, of_file, part, si
@@ -36,7 +36,7 @@ class Windowed(ABC):
     unwritten: ClassVar[dict[str, type[Any]]] = {}  # no file names them, but a saved result
     heading: ClassVar[str]  # of its table in a file
     kind: str
-    name: Annotated[str, Strict()] = ""
+    name: StrictStr = ""
     after: Time | None = None
     until: Time | None = None
     from_speed: AngularSpeed | None = None
