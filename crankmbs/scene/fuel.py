@@ -9,14 +9,12 @@ from annotated_types import Ge, Le, Len
 from pydantic import BeforeValidator, StrictInt, ValidationInfo
 
 from crankmbs.errors import InputError, shown
-from crankmbs.scene.schema import Float, part, si
+from crankmbs.scene.schema import AngularSpeed, Float, Time, part, si
 
 __all__ = ["Fuel", "Governor", "Misfire"]
 
 _CYCLES = re.compile(r"(every +)?([1-9][0-9]{0,8})(?:-([1-9][0-9]{0,8}))?")
 
-AngularSpeed = Annotated[Float, si("angular speed")]
-Time = Annotated[Float, Ge(0), si("time")]
 Share = Annotated[Float, Ge(0), Le(100)]
 
 

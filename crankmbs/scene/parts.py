@@ -14,7 +14,7 @@ from annotated_types import Ge, Gt, Le, Len
 from pydantic import Discriminator, StrictInt, Tag
 
 from crankmbs.errors import InputError, shown
-from crankmbs.scene.schema import Float, part, si
+from crankmbs.scene.schema import Angle, Float, part, si
 
 __all__ = [
     "LIGHT_CRANK",
@@ -40,7 +40,6 @@ Distance = Annotated[Float, si("length")]
 Mass = Annotated[Float, Ge(0), si("mass")]
 Inertia = Annotated[Float, Ge(0), si("inertia")]
 Area = Annotated[Float, Gt(0), si("area")]
-Angle = Annotated[Float, si("angle")]
 
 
 def _number_or_word(value: object) -> str:

@@ -13,10 +13,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from numbers import Real
 from pathlib import Path
-from typing import Any, TypeVar, dataclass_transform
+from typing import Annotated, Any, TypeVar, dataclass_transform
 
 import numpy as np
 import pydantic
+from annotated_types import Ge, Gt
 from pydantic import BeforeValidator, ConfigDict, StrictFloat, ValidationError, ValidationInfo
 
 from crankmbs.errors import InputError, shown
@@ -26,9 +27,13 @@ from crankmbs.scene.units import EXAMPLES, check_size, quantity
 
 __all__ = [
     "SAVED",
+    "Angle",
+    "AnglePeriod",
+    "AngularSpeed",
     "CsvFile",
     "Float",
     "Quantity",
+    "Time",
     "dimension_of",
     "dumped",
     "folder_of",
@@ -94,6 +99,12 @@ def si(dimension: str) -> BeforeValidator:
     In a file an angle or an angular speed needs its unit: 90 could mean degrees.
     """
     return BeforeValidator(Quantity(dimension))
+
+
+Angle = Annotated[Float, si("angle")]
+AngularSpeed = Annotated[Float, si("angular speed")]
+Time = Annotated[Float, Ge(0), si("time")]
+AnglePeriod = Annotated[Float, Gt(0), si("angle")]
 
 
 def dimension_of(owner: type[Any], name: str) -> str | None:
