@@ -11,7 +11,14 @@ from typer import Exit, Option, echo
 
 from crankmbs.cli.folder import results_folder, wrote
 from crankmbs.cli.loads import loads_table
-from crankmbs.cli.options import CostCap, NoFigures, OutBesideScene, SceneName, WrittenScene
+from crankmbs.cli.options import (
+    CostCap,
+    NoFigures,
+    OutBesideScene,
+    SceneName,
+    WrittenScene,
+    named_scene,
+)
 from crankmbs.cli.progress import progress
 from crankmbs.cli.text import heading, table
 from crankmbs.digits import digits, error_digits
@@ -43,10 +50,9 @@ def balance(
     """Find counterweights; show what is left of first and second order, before and after."""
     from crankmbs.design import balance as balanced
     from crankmbs.export import copy_scene
-    from crankmbs.scene.read import load_scene, scene_path
 
-    path, part_of = scene_path(scene), _share(share)
-    machine = load_scene(path)
+    path, machine = named_scene(scene)
+    part_of = _share(share)
     folder = results_folder(path, out)
     with progress("balancing"):
         weights = balanced(machine, part_of, cost_cap=cost_cap)

@@ -11,7 +11,7 @@ from typer import Exit, Option, echo
 
 from crankmbs.cli.folder import results_folder, wrote_into
 from crankmbs.cli.loads import loads_table
-from crankmbs.cli.options import NoFigures, OutBesideScene, SceneName, WrittenScene
+from crankmbs.cli.options import NoFigures, OutBesideScene, SceneName, WrittenScene, named_scene
 from crankmbs.cli.progress import progress
 from crankmbs.cli.text import heading, table
 from crankmbs.digits import digits, error_digits
@@ -43,7 +43,6 @@ def flywheel(
 ) -> None:
     """Find the crank inertia that gives a fluctuation of speed on the settled cycle."""
     from crankmbs.design.flywheel import flywheel as sized
-    from crankmbs.scene.read import load_scene, scene_path
 
     match = _SHARE.fullmatch(fluctuation)
     number = float(match[1]) * (0.01 if match[2] else 1.0) if match else math.nan
@@ -57,8 +56,7 @@ def flywheel(
             f"--fluctuation: {number:g} without a unit is {100.0 * number:g} % of the mean speed; "
             f'write "{number:g} %", or "{100.0 * number:g} %" if that is meant'
         )
-    path = scene_path(scene)
-    machine = load_scene(path)
+    path, machine = named_scene(scene)
     folder = None if no_figures else results_folder(path, out)
     with progress("sizing"):
         wheel = sized(machine, number)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from typer import Exit, Option, echo
 
 from crankmbs.cli.folder import results_folder, wrote
-from crankmbs.cli.options import CostCap, NoFigures, Out, Rtol, SceneName, Until
+from crankmbs.cli.options import CostCap, NoFigures, Out, Rtol, SceneName, Until, named_scene
 from crankmbs.cli.progress import progress
 from crankmbs.errors import InputError
 from crankmbs.storage.files import together
@@ -54,12 +54,11 @@ def run(
     from crankmbs.choose import choose, chosen
     from crankmbs.cli.report import report
     from crankmbs.measures import measure
-    from crankmbs.scene.read import load_scene, scene_path
     from crankmbs.simulate import simulate
 
-    path = scene_path(scene)
+    path, machine = named_scene(scene)
     options = {"formulation": formulation, "rtol": rtol, "until": until, "every": every}
-    machine = override(load_scene(path), **options)
+    machine = override(machine, **options)
     choice = choose(machine, machine.run.formulation)
     angles = [_angle(text) for text in at or ()]
     if confirm and choice.formulation == "multibody":
