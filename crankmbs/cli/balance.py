@@ -20,8 +20,8 @@ from crankmbs.cli.options import (
     named_scene,
 )
 from crankmbs.cli.progress import progress
-from crankmbs.cli.text import heading, table
-from crankmbs.digits import digits, error_digits
+from crankmbs.cli.text import cells, heading, table
+from crankmbs.digits import digits
 from crankmbs.errors import InputError
 from crankmbs.storage.files import together
 
@@ -138,8 +138,8 @@ def _report(name: str, weights: Balance) -> str:
         [
             f"{force.quantity}, {force.direction} [{force.units}]",
             f"{force.order:g}",
-            *(digits(*force.before), error_digits(force.before.error)),
-            *(digits(*force.after), error_digits(force.after.error)),
+            *cells(force.before),
+            *cells(force.after),
         ]
         for force in weights.remaining
     ]
