@@ -23,6 +23,7 @@ from crankmbs.cli.progress import progress
 from crankmbs.cli.text import cells, heading, table
 from crankmbs.digits import digits
 from crankmbs.errors import InputError
+from crankmbs.scene.units import share_of
 from crankmbs.storage.files import together
 
 if TYPE_CHECKING:
@@ -120,12 +121,7 @@ def _crank(scene: Scene, weights: Balance, cost_cap: float) -> list[str]:
 
 def _share(text: str) -> float:
     """A share such as "50%" or 0.5."""
-    number = text.strip()
-    percent = number.endswith("%")
-    try:
-        value = float(number.removesuffix("%")) * (0.01 if percent else 1.0)
-    except ValueError:
-        value = -1.0
+    value = share_of(text)
     if not 0.0 <= value <= 1.0:
         raise InputError(f'--share: must be from 0% to 100%, such as "50%"; {text!r} came')
     return value

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -16,7 +15,7 @@ from crankmbs.cli.progress import progress
 from crankmbs.cli.text import heading, table
 from crankmbs.digits import digits, error_digits
 from crankmbs.errors import InputError, shown
-from crankmbs.scene.units import DEGREE, RPM
+from crankmbs.scene.units import DEGREE, RPM, share_of
 from crankmbs.storage.files import together
 
 if TYPE_CHECKING:
@@ -29,7 +28,6 @@ __all__ = ["flywheel"]
 _POINTS, _BEYOND = 13, 2.0  # of the curve drawn, and how far it goes beyond both inertias
 _NOTHING = 1e-9  # of W: a load that balances is none
 _LARGE = 0.2  # of the mean speed: as a bare number rather a percentage without its sign
-_SHARE = re.compile(r"\s*(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+)\s*(%?)\s*")
 
 
 def flywheel(
@@ -44,14 +42,13 @@ def flywheel(
     """Find the crank inertia that gives a fluctuation of speed on the settled cycle."""
     from crankmbs.design.flywheel import flywheel as sized
 
-    match = _SHARE.fullmatch(fluctuation)
-    number = float(match[1]) * (0.01 if match[2] else 1.0) if match else math.nan
+    number = share_of(fluctuation)
     if not 0.0 < number < 2.0:
         raise InputError(
             "--fluctuation: must be a share of the mean speed above 0 and below 200 %, such as "
             f'"1 %" or 0.01; {shown(fluctuation)} came'
         )
-    if match and not match[2] and number >= _LARGE:
+    if "%" not in fluctuation and number >= _LARGE:
         raise InputError(
             f"--fluctuation: {number:g} without a unit is {100.0 * number:g} % of the mean speed; "
             f'write "{number:g} %", or "{100.0 * number:g} %" if that is meant'
