@@ -12,7 +12,7 @@ from typer import Exit, Option, echo
 from crankmbs.cli.folder import results_folder, wrote
 from crankmbs.cli.options import CostCap, NoFigures, Out, Rtol, SceneName, Until, named_scene
 from crankmbs.cli.progress import progress
-from crankmbs.errors import InputError
+from crankmbs.errors import InputError, at_place
 from crankmbs.storage.files import together
 
 if TYPE_CHECKING:
@@ -53,6 +53,7 @@ def run(
     """Run a scene: print its measures, write data and figures."""
     from crankmbs.choose import choose, chosen
     from crankmbs.cli.report import report
+    from crankmbs.compare.at import angle_of
     from crankmbs.measures import measure
     from crankmbs.simulate import simulate
 
@@ -60,7 +61,8 @@ def run(
     options = {"formulation": formulation, "rtol": rtol, "until": until, "every": every}
     machine = override(machine, **options)
     choice = choose(machine, machine.run.formulation)
-    angles = [_angle(text) for text in at or ()]
+    with at_place("--at"):
+        angles = [angle_of(text) for text in at or ()]
     if confirm and choice.formulation == "multibody":
         raise InputError(
             "--confirm compares a run with multibody, and this run is multibody itself; "
@@ -137,16 +139,6 @@ def _draw(outcome: _Outcome, folder: Path) -> list[str]:
         differences = outcome.confirmation.period
         files.append(figures.save_differences(outcome.result, differences, folder))
     return [file.name for file in files]
-
-
-def _angle(text: str) -> float:
-    """A crank angle of the option --at [rad]."""
-    from crankmbs.compare.at import angle_of
-
-    try:
-        return angle_of(text)
-    except InputError as error:
-        raise InputError(f"--at: {error}") from None
 
 
 def override(scene: Scene, **options: Any) -> Scene:

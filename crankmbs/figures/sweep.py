@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -16,7 +15,7 @@ from matplotlib.ticker import MaxNLocator
 
 from crankmbs.digits import error_digits
 from crankmbs.display import displayed
-from crankmbs.errors import InputError
+from crankmbs.errors import InputError, at_place
 from crankmbs.figures.style import COLOURS, STYLE, caption, label_contours, logarithmic, tiles
 from crankmbs.numerics.arrays import Array
 from crankmbs.sweep.columns import Column
@@ -107,10 +106,12 @@ def sweep_figure(
     reading = reading_of(show, columns)
     values, error = _of_cases(data, reading)
     scale, unit = _on_axis(reading.about.units)
-    at = None if limit is None else _limit(limit, reading) / scale
+    with at_place("limit"):
+        at = None if limit is None else amount_of(limit, reading) / scale
     drawn = _Drawn(values / scale, reading.words, unit, at)
     if over is not None:
-        measure = _measure(over, columns)
+        with at_place("over"):
+            measure = reading_of(over, columns)
         size, its_unit = _on_axis(measure.about.units)
         label = f"{measure.words} [{_typeset(its_unit)}]"
         drawn = drawn._replace(over=(_of_cases(data, measure)[0] / size, label))
@@ -131,26 +132,12 @@ def sweep_figure(
     return figure
 
 
-def _measure(over: str, columns: Mapping[str, Column]) -> Reading:
-    try:
-        return reading_of(over, columns)
-    except InputError as error:
-        raise InputError(f"over: {error}") from None
-
-
 def _of_cases(data: xr.Dataset, reading: Reading) -> tuple[xr.DataArray, float]:
     """A measure of every case and the largest of its errors."""
     values, errors = reading.of(data)
     if not np.isfinite(values.values).any():
         raise InputError(f"{reading.words}: no case of this sweep has it")
     return values, float(errors.max())
-
-
-def _limit(text: str, reading: Reading) -> float:
-    try:
-        return amount_of(text, reading)
-    except InputError as error:
-        raise InputError(f"limit: {error}") from None
 
 
 def _varied(data: xr.Dataset) -> xr.Dataset:

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.errors import InputError, shown
+from crankmbs.errors import InputError, at_place, shown
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.function import named
 from crankmbs.scene.change import changed, field_at
@@ -218,10 +218,8 @@ def _spaced(kind: _Kind, match: re.Match[str]) -> Knob:
 def _number(kind: _Kind, number: str, unit: str) -> float:
     """A number in SI units; only those without a dimension, and bare SI numbers, have no unit."""
     if kind.dimension is not None and (unit or kind.dimension in ("angle", "angular speed")):
-        try:
+        with at_place(kind.name):
             return quantity(f"{number} {unit}", kind.dimension)
-        except InputError as error:
-            raise InputError(f"{kind.name}: {error}") from None
     if unit:
         raise InputError(f"{kind.name}: takes numbers without a unit; {shown(unit)} came")
     value = float(number)
