@@ -11,8 +11,9 @@ from typer import Option
 from crankmbs.cli.options import SceneName, named_scene
 from crankmbs.cli.progress import progress
 from crankmbs.cli.sweep import answered, varied
-from crankmbs.cli.text import cells, table, with_unit
+from crankmbs.cli.text import cells, table
 from crankmbs.digits import digits
+from crankmbs.display import with_unit
 from crankmbs.errors import InputError
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ from typer import Option
 from crankmbs.cli.options import SceneName, named_scene
 from crankmbs.cli.progress import progress
 from crankmbs.cli.sweep import answered, varied
-from crankmbs.cli.text import cells, table, with_unit
-from crankmbs.display import displayed
+from crankmbs.cli.text import cells, table
+from crankmbs.display import displayed, with_unit
 from crankmbs.errors import InputError
 
 if TYPE_CHECKING:

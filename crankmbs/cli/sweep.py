@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Annotated
 from typer import Exit, Option, echo
 
 from crankmbs.cli.options import SceneName, named_scene
-from crankmbs.cli.text import cells, heading, table, with_unit
+from crankmbs.cli.text import cells, heading, table
+from crankmbs.display import with_unit
 from crankmbs.errors import CrankmbsError, InputError, shown
 
 if TYPE_CHECKING:

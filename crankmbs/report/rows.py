@@ -12,7 +12,7 @@ from collections import Counter
 from typing import NamedTuple
 
 from crankmbs.digits import digits, error_digits
-from crankmbs.display import displayed
+from crankmbs.display import displayed, with_unit
 from crankmbs.measures import Estimate, JointForce, Measures
 from crankmbs.measures.names import Named, names_of, signless, values_of
 from crankmbs.measures.peaks import Peak, run_peaks
@@ -102,7 +102,7 @@ def _over_cycles(result: Result) -> list[Table]:
             bounds = [float(one[end]) for one, end in zip(pair, ends, strict=True)]
             if least == largest and bounds[1] - bounds[0] <= _CLEARLY * max(map(abs, bounds)):
                 continue
-            name = labelled(f"{words}, cylinder {k}" if len(low) > 1 else words, None, 1, units)
+            name = with_unit(f"{words}, cylinder {k}" if len(low) > 1 else words, units)
             ((lowest, apart), (highest, _)) = (_cells(units, Estimate(x, error)) for x in bounds)
             places = [str(number[end]) for end in ends]
             rows.append([name, lowest, places[0], highest, places[1], apart])
@@ -313,13 +313,12 @@ def labelled(name: str, number: int | None, count: int, units: str) -> str:
     >>> labelled("crank pin", 2, 4, "Pa")
     'crank pin 2 [bar]'
     """
-    number_of = f" {number}" if number is not None and count > 1 else ""
-    unit = f" [{displayed(units)[1]}]" if units != "1" else ""
-    return f"{name}{number_of}{unit}"
+    numbered = number is not None and count > 1
+    return with_unit(f"{name} {number}" if numbered else name, units)
 
 
 def _row(name: str, units: str, estimate: Estimate) -> list[str]:
-    return [labelled(name, None, 1, units), *_cells(units, estimate)]
+    return [with_unit(name, units), *_cells(units, estimate)]
 
 
 def _cells(units: str, estimate: Estimate) -> list[str]:
