@@ -48,11 +48,6 @@ class _Drawn(NamedTuple):
     limit: float | None
     over: tuple[Any, str] | None = None
 
-    @property
-    def label(self) -> str:
-        """What it is, with its unit."""
-        return f"{self.words} [{self.unit}]"
-
 
 class _Axis(NamedTuple):
     """A knob or a measure as an axis: where its values stand, of a measure over a grid a table, and
@@ -121,7 +116,7 @@ def sweep_figure(
     else:
         names = knobs or [str(name) for name in data.coords if data[name].dims == ("case",)]
         figure = _over_each(data, drawn, names, joined=bool(knobs))
-    figure.suptitle(drawn.label, fontsize=14)
+    figure.suptitle(f"{drawn.words} [{unit}]", fontsize=14)
     missing = int(np.count_nonzero(np.isnan(values.values)))
     lines = [str(data.attrs.get("title", "")), f"{values.size} cases; numerical error at most "]
     lines[1] += f"{error_digits(error / scale)} {unit}"
@@ -150,8 +145,12 @@ def _varied(data: xr.Dataset) -> xr.Dataset:
 def _over(data: xr.Dataset, drawn: _Drawn, knobs: list[str]) -> Figure:
     """Filled contours over the first two knobs, a panel for each combination of the others."""
     y, x, *further = knobs
-    stacked = drawn.values.stack(panel=further) if further else drawn.values.expand_dims("panel")
-    tables = stacked.transpose("panel", y, x)
+
+    def by_panel(values: xr.DataArray) -> xr.DataArray:
+        stacked = values.stack(panel=further) if further else values.expand_dims("panel")
+        return stacked.transpose("panel", y, x)
+
+    tables = by_panel(drawn.values)
     count = tables.sizes["panel"]
     if count > _MOST:
         raise InputError(
@@ -164,8 +163,7 @@ def _over(data: xr.Dataset, drawn: _Drawn, knobs: list[str]) -> Figure:
     for k, ax in enumerate(axes):
         if drawn.over is not None:
             along, label = drawn.over
-            parts = along.stack(panel=further) if further else along.expand_dims("panel")
-            across = _measured(parts.transpose("panel", y, x).values[k], label)
+            across = _measured(by_panel(along).values[k], label)
         panel = drawn._replace(values=tables.values[k])
         filled = _contours(ax, (across, _axis(data, y)), panel, levels)
         if further:
