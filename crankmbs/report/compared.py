@@ -133,7 +133,7 @@ def comparison_table(comparison: Comparison) -> Table:
         peak = next(iter(compared.values())).peak
         last = list(compared.values())[-1]
         shares = (
-            _share(percent(compared[name].size.largest, peak)) if name in compared else ""
+            digits(percent(compared[name].size.largest, peak), most=3) if name in compared else ""
             for name in references
         )
         angle = f"{math.degrees(last.size.angle):.0f}"
@@ -203,7 +203,3 @@ def _signed(share: float) -> str:
     if not math.isfinite(share):
         return "-"
     return f"{share:+.2f}" if abs(share) >= _LEAST else "0"
-
-
-def _share(percentage: float) -> str:
-    return digits(percentage, most=3)

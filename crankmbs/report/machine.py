@@ -21,7 +21,7 @@ from crankmbs.scene.parts import RunningGear
 from crankmbs.scene.run import SETTLED, Extent
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.speed_rows import repeats
-from crankmbs.scene.tables import CylinderTable, Table
+from crankmbs.scene.tables import CylinderTable
 from crankmbs.scene.torque import Torque
 from crankmbs.scene.units import BAR, RPM
 
@@ -308,15 +308,12 @@ def _speed(speed: float | Oscillation | Ramp | SpeedFile) -> str:
             least, most = _rpm(min(table.y)), _rpm(max(table.y))
             over_time = speed.kind == "time_table"
             over = " over time" if over_time else " over the crank angle"
-            again = "" if over_time or not repeats(table) else f", again every {_turned(table)}"
+            turned = f", again every {math.degrees(table.x[-1] - table.x[0]):.6g} deg"
+            again = "" if over_time or not repeats(table) else turned
             rows = f"{len(table.x)} rows of {table.source}, {speed.interpolation}"
             return f"{least} to {most}{over} in {rows}{again}"
         case _:
             return f"{_rpm(speed)}{_sense(speed)}"
-
-
-def _turned(table: Table) -> str:
-    return f"{math.degrees(table.x[-1] - table.x[0]):.6g} deg"
 
 
 def _rpm(speed: float) -> str:
