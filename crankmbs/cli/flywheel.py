@@ -41,6 +41,7 @@ def flywheel(
 ) -> None:
     """Find the crank inertia that gives a fluctuation of speed on the settled cycle."""
     from crankmbs.design.flywheel import flywheel as sized
+    from crankmbs.measures import measure
 
     number = share_of(fluctuation)
     if not 0.0 < number < 2.0:
@@ -62,7 +63,8 @@ def flywheel(
     lines = [_report(path.stem, machine, wheel, before)]
     if wheel.status == 0:
         with progress("loads"):
-            lines += ["", loads, ""] if (loads := _loads(wheel, before)) else [""]
+            loads = loads_table(before, measure(wheel.result), "with it")
+        lines += ["", loads, ""] if loads else [""]
         if folder is not None:
             lines.append(wrote_into(folder, [_drawn(machine, wheel, folder)]))
         if write is not None:
@@ -79,13 +81,6 @@ def _before(scene: Scene) -> Measures | None:
 
     inertia = scene.crank.moment_of_inertia
     return fluctuations(scene, [inertia])[0] if inertia > 0.0 else None
-
-
-def _loads(wheel: Flywheel, before: Measures | None) -> str:
-    """Bearing loads with the scene's inertia, if it has any, and with the one that was sized."""
-    from crankmbs.measures import measure
-
-    return loads_table(before, measure(wheel.result), "with it")
 
 
 def _drawn(scene: Scene, wheel: Flywheel, folder: Path) -> str:

@@ -63,7 +63,10 @@ def _errors(outcome: WorkPrecision) -> str:
     names = outcome.quantities
     headings = ["relative error", "setting", "stated", *names, "time [ms]", "runs", "evaluations"]
     floors = outcome.reference.floors
-    rows = [[row.contender, _setting(row), *_numbers(row, floors)] for row in outcome.rows]
+    rows = [
+        [row.contender, f"{row.knob} {row.setting:g}", *_numbers(row, floors)]
+        for row in outcome.rows
+    ]
     of_reference = [error_digits(floors[name]) for name in names]
     return table(headings, [*rows, ["reference itself", "", "", *of_reference, "", "", ""]])
 
@@ -98,10 +101,6 @@ def _sentences(outcome: WorkPrecision) -> list[str]:
         *outcome.notes,
         *outcome.machine,
     ]
-
-
-def _setting(row: Row) -> str:
-    return f"{row.knob} {row.setting:g}"
 
 
 def _error(value: float | None, floor: float = 0.0) -> str:
