@@ -122,7 +122,9 @@ def _rebuilt(old: Any, changes: Sequence[_Change], place: tuple[str, ...]) -> An
         name = known.get(key, key)
         if name not in known.values():
             near = did_you_mean(key, list(known)) or f"; known are {', '.join(known)}"
-            raise InputError(f"{below[0].name}: {_called(old)} has no {shown(key)}{near}")
+            part = type(old).__name__
+            called = "scene" if part == "Scene" else part
+            raise InputError(f"{below[0].name}: a {called} has no {shown(key)}{near}")
         new[name] = _below(getattr(old, name), below, (*place, key))
         names[name] = [change.name for change in below]
     try:
@@ -159,10 +161,6 @@ def _below(old: Any, changes: Sequence[_Change], place: tuple[str, ...]) -> Any:
     part = "__".join(place)
     state = f"is one value, {shown(old)}" if old not in (None, ()) else "is not there"
     raise InputError(f"{first.name}: in this scene {part} {state}; give {part} as a whole")
-
-
-def _called(part: Any) -> str:
-    return "a scene" if type(part).__name__ == "Scene" else f"a {type(part).__name__}"
 
 
 def _in_given_names(text: str, names_of: Mapping[str, list[str]]) -> str:
