@@ -15,7 +15,6 @@ from crankmbs.mechanics.windows import Phase, first_phases
 from crankmbs.report.rows import cycle_remark
 from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
-from crankmbs.scene.force import PistonForce
 from crankmbs.scene.gas import AnyPressure, Gas, tables_of
 from crankmbs.scene.parts import RunningGear
 from crankmbs.scene.run import SETTLED, Extent
@@ -71,7 +70,13 @@ def machine_rows(scene: Scene) -> list[tuple[str, str]]:
         ("motion", _motion(scene)),
         *(("", text) for text in speed_remarks(scene)),
         *((f"torque[{k}]", _load(scene, load)) for k, load in enumerate(scene.torque, start=1)),
-        *((f"force[{k}]", _force(force)) for k, force in enumerate(scene.force, start=1)),
+        *(
+            (
+                f"force[{k}]",
+                f"on {each.acts_on}, {each.introduced}: {each.words}{each.window_words}",
+            )
+            for k, each in enumerate(scene.force, start=1)
+        ),
         ("run", _run(scene)),
     ]
     return [(name, text) for name, text in rows if text]
@@ -246,10 +251,6 @@ def _friction(scene: Scene) -> str:
         f"{friction.viscous:.6g} N s/m times the velocity" * (friction.viscous > 0.0),
     ]
     return f"{' and '.join(part for part in parts if part) or 'none'}, against each sliding piston"
-
-
-def _force(force: PistonForce) -> str:
-    return f"on {force.acts_on}, {force.introduced}: {force.words}{force.window_words}"
 
 
 def _shells(scene: Scene) -> str:

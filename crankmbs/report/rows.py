@@ -118,19 +118,16 @@ def measure_tables(measures: Measures) -> list[Table]:
     ['over the last cycle', 'over the last cycle']
     """
     window = f"over the {measures.window.kind}"
+    # over cycles that differ there stands in which each is, before its mean
+    headings = FORCE_HEADINGS[:4] + ["cycle"] * _differ(measures) + FORCE_HEADINGS[4:]
     parts = [
         Table([window, "value, to 6 digits", _ERROR], measure_rows(measures)),
-        Table([window, *_headings(measures)], peak_rows(measures)),
+        Table([window, *headings], peak_rows(measures)),
     ]
     if specific := _specific(measures):
         name = f"specific load {window} [N/mm^2]"
         parts.append(Table([name, "peak", _ERROR, "mean", _ERROR], specific))
     return parts
-
-
-def _headings(measures: Measures) -> list[str]:
-    """Of peaks: over cycles that differ there stands in which each is, before its mean."""
-    return FORCE_HEADINGS[:4] + ["cycle"] * _differ(measures) + FORCE_HEADINGS[4:]
 
 
 def _differ(measures: Measures) -> bool:
