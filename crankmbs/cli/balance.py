@@ -27,7 +27,7 @@ from crankmbs.scene.units import share_of
 from crankmbs.storage.files import together
 
 if TYPE_CHECKING:
-    from crankmbs.design import Balance, Remaining
+    from crankmbs.design import Balance
     from crankmbs.scene.scene import Scene
 
 __all__ = ["balance"]
@@ -217,10 +217,9 @@ def _may_share(scene: Scene) -> list[tuple[int, int]]:
 
 def _csv(weights: Balance) -> str:
     head = "quantity,direction,order,units,before,before_error,after,after_error"
-    return "\n".join([head, *map(_line, weights.remaining)]) + "\n"
-
-
-def _line(force: Remaining) -> str:
-    numbers = (*force.before, *force.after)
-    words = f"{force.quantity},{force.direction},{force.order:g},{force.units}"
-    return ",".join([words, *(f"{number:.12g}" for number in numbers)])
+    lines = [head]
+    for force in weights.remaining:
+        words = f"{force.quantity},{force.direction},{force.order:g},{force.units}"
+        numbers = (f"{number:.12g}" for number in (*force.before, *force.after))
+        lines.append(",".join([words, *numbers]))
+    return "\n".join(lines) + "\n"
