@@ -34,6 +34,8 @@ __all__ = ["CONSTANT", "AnyPressure", "Gas", "Indicator", "Polytrope", "tables_o
 CONSTANT = "a constant"  # the source of its table, where it stands in a list
 
 Pressure = Annotated[Float, Gt(0), si("pressure")]
+CompressionRatio = Annotated[Float, Gt(1), Le(1e4)]
+Exponent = Annotated[Float, Gt(0), Le(10)]
 
 _COLUMNS = Header(
     {"crank_angle_deg": DEGREE},
@@ -61,9 +63,9 @@ class Indicator:
     and filled at the bottom dead centre.
     """
 
-    compression_ratio: Annotated[Float, Gt(1), Le(1e4)]
-    n_compression: Annotated[Float, Gt(0), Le(10)]
-    n_expansion: Annotated[Float, Gt(0), Le(10)]
+    compression_ratio: CompressionRatio
+    n_compression: Exponent
+    n_expansion: Exponent
     intake_pressure: Pressure
     exhaust_pressure: Pressure | None = None
     peak_pressure: Pressure
@@ -142,9 +144,9 @@ class Polytrope:
     true bottom dead centre behind, where the file goes on.
     """
 
-    polytrope: Annotated[Float, Gt(0), Le(10)]
+    polytrope: Exponent
     closes: Annotated[Float, Ge(-math.pi), Le(0), si("angle")]
-    compression_ratio: Annotated[Float, Gt(1), Le(1e4)]
+    compression_ratio: CompressionRatio
 
 
 def _motored(value: Any, info: ValidationInfo) -> Any:
