@@ -73,7 +73,8 @@ def machine_rows(scene: Scene) -> list[tuple[str, str]]:
         *(
             (
                 f"force[{k}]",
-                f"on {each.acts_on}, {each.introduced}: {each.words}{each.window_words}",
+                f"on {f'piston {each.cylinder}' if each.cylinder else 'each piston'}, "
+                f"{each.introduced}: {each.words}{each.window_words}",
             )
             for k, each in enumerate(scene.force, start=1)
         ),

@@ -87,11 +87,6 @@ class PistonForce(Windowed):
         unknown = law.python is not None and law.python.period is None
         return not (varies or self.has_window or unknown)
 
-    @property
-    def acts_on(self) -> str:
-        """On whose piston, in words."""
-        return "each piston" if self.cylinder is None else f"piston {self.cylinder}"
-
 
 AnyForce = Annotated[SerializeAsAny[PistonForce], PlainValidator(one_of_kinds(PistonForce))]
 """A force of whatever class."""
