@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from crankmbs.scene.units import BAR, DEGREE, RPM
 
-__all__ = ["displayed"]
+__all__ = ["displayed", "with_unit"]
 
 _DISPLAYED = {
     "rad/s": (RPM, "rpm"),
@@ -23,3 +23,12 @@ def displayed(units: str) -> tuple[float, str]:
     (1000.0, 'kW')
     """
     return _DISPLAYED.get(units, (1.0, units))
+
+
+def with_unit(name: str, units: str) -> str:
+    """A name, and in brackets the unit that people read for these SI units, if any.
+
+    >>> with_unit("crank pin", "Pa")
+    'crank pin [bar]'
+    """
+    return f"{name} [{displayed(units)[1]}]" if units not in ("", "1") else name

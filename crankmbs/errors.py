@@ -16,6 +16,8 @@ from __future__ import annotations
 import inspect
 import json
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 __all__ = [
     "CrankmbsError",
@@ -24,6 +26,7 @@ __all__ = [
     "OutputError",
     "SceneError",
     "UndecidedError",
+    "at_place",
     "shown",
 ]
 
@@ -62,6 +65,21 @@ class FormulationError(CrankmbsError):
 
 class OutputError(CrankmbsError, OSError):
     """A result that cannot be written or read."""
+
+
+@contextmanager
+def at_place(place: str) -> Iterator[None]:
+    """Begin the sentence of what cannot be with where it stands.
+
+    >>> with at_place("--at"):
+    ...     raise InputError("must be an angle")
+    Traceback (most recent call last):
+    crankmbs.errors.InputError: --at: must be an angle
+    """
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"{place}: {error}") from None
 
 
 def shown(value: object) -> str:

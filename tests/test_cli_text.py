@@ -9,8 +9,9 @@ import pytest
 
 import crankmbs.cli.progress
 from crankmbs.cli.progress import progress
-from crankmbs.cli.text import cells, table, with_unit
+from crankmbs.cli.text import cells, table
 from crankmbs.digits import digits, error_digits
+from crankmbs.display import with_unit
 from crankmbs.measures import Estimate
 
 

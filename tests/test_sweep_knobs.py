@@ -6,10 +6,10 @@ import re
 import numpy as np
 import pytest
 
-from crankmbs import InputError, Sample, load_scene, sweep
+from crankmbs import InputError, Ramp, Sample, load_scene, sweep
 from crankmbs.mechanics.carried import carried_over
 from crankmbs.sweep.cases import cases_of
-from crankmbs.sweep.knobs import interval_of, knob_of
+from crankmbs.sweep.knobs import interval_of, knob_of, number_at
 from crankmbs.sweep.scenes import scene_of
 
 pytestmark = pytest.mark.slow
@@ -187,3 +187,9 @@ def test_loads_are_scaled_to_a_mean_speed(wanted):
 def test_a_settled_speed_that_no_load_gives_is_refused(scene, speed, said):
     with pytest.raises(InputError, match=said):
         scene_of(scene, ["settled_speed"], [speed])
+
+
+def test_a_key_that_python_calls_otherwise_has_its_number():
+    ramp = Ramp(start=100.0, to=200.0, over=1.0)
+    scene = load_scene("yi_diesel").with_(motion__speed=ramp)
+    assert number_at(scene, "motion.speed.from").values.tolist() == [100.0]

@@ -88,11 +88,6 @@ class Machine:
         """One of them."""
         return self.scenes[0]
 
-    @property
-    def in_time(self) -> bool:
-        """Whether motions end at a time."""
-        return self.scene.end[1] and not self.scene.settles
-
 
 def key_of(scene: Scene) -> Hashable:
     """What two scenes have in common that share a machine; scenes that start and turn."""

@@ -69,16 +69,11 @@ def measure(machine: Machine, cases: Cases, passes: Sequence[Energies]) -> tuple
     shown = ("duration", "fast", "slow", *(name.removesuffix("_angle") for name in angles))
     parts = [np.nan_to_num(errors[name] / np.abs(answer[name])).T for name in shown]
     answer["relative"] = np.vstack(parts).max(axis=0)
-    for name, (value, error) in _pressures(machine.scenes).items():
-        answer[name], errors[name] = (each + 0.0 * fast[:, None] for each in (value, error))
+    highest = [highest_pressures(scene) for scene in machine.scenes]
+    for name in highest[0]:
+        both = np.stack([of[name] for of in highest], axis=1)
+        answer[name], errors[name] = (each + 0.0 * fast[:, None] for each in both)
     return answer | angles, errors
-
-
-def _pressures(scenes: Sequence[Scene]) -> dict[str, Array]:
-    """The highest pressures in every cylinder of machines, and their errors [Pa]."""
-    every = [highest_pressures(scene) for scene in scenes]
-    names = every[0]
-    return {name: np.stack([highest[name] for highest in every], axis=1) for name in names}
 
 
 def _integrals(motions: Motions) -> Numbers:

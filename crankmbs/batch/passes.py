@@ -42,7 +42,7 @@ def passes_of(machine: Machine, cases: Cases) -> tuple[Energies, Energies, NDArr
     run comes to it, and that it keeps clear of rest."""
     one, other = machine.answer, machine.check
     energy = 0.5 * (cases.mass + one.at_begin) * cases.speed**2
-    plain, raised = (Setup(machine.sense, machine.in_time, nudge) for nudge in (0.0, _NUDGE))
+    plain, raised = (Setup(machine.sense, machine.scene.end[1], nudge) for nudge in (0.0, _NUDGE))
     if not machine.scene.settles:
         answer = run(one, cases, plain, energy)
         cell = None if answer.cuts is None else answer.cuts.cell

@@ -8,7 +8,7 @@ from typing import Annotated
 from typer import Exit, Option, echo
 
 from crankmbs.cli.folder import writable
-from crankmbs.cli.options import SceneName
+from crankmbs.cli.options import SceneName, named_scene
 from crankmbs.cli.progress import progress
 
 __all__ = ["animate"]
@@ -28,11 +28,10 @@ def animate(
 ) -> None:
     """Film the mechanism and its speed over the last cycle, for slides."""
     from crankmbs.figures.animation import Filming, check_filming, check_format, save_animation
-    from crankmbs.scene.read import load_scene, scene_path
     from crankmbs.simulate import simulate
 
-    path = scene_path(scene)
-    loaded, filming = load_scene(path), Filming(length, width, cylinder, forces)
+    path, loaded = named_scene(scene)
+    filming = Filming(length, width, cylinder, forces)
     file = Path(f"{path.stem}.gif") if out is None else out
     check_format(file)
     check_filming(filming, loaded)

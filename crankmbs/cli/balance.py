@@ -11,15 +11,23 @@ from typer import Exit, Option, echo
 
 from crankmbs.cli.folder import results_folder, wrote
 from crankmbs.cli.loads import loads_table
-from crankmbs.cli.options import CostCap, NoFigures, OutBesideScene, SceneName, WrittenScene
+from crankmbs.cli.options import (
+    CostCap,
+    NoFigures,
+    OutBesideScene,
+    SceneName,
+    WrittenScene,
+    named_scene,
+)
 from crankmbs.cli.progress import progress
-from crankmbs.cli.text import heading, table
-from crankmbs.digits import digits, error_digits
+from crankmbs.cli.text import cells, heading, table
+from crankmbs.digits import digits
 from crankmbs.errors import InputError
+from crankmbs.scene.units import share_of
 from crankmbs.storage.files import together
 
 if TYPE_CHECKING:
-    from crankmbs.design import Balance, Remaining
+    from crankmbs.design import Balance
     from crankmbs.scene.scene import Scene
 
 __all__ = ["balance"]
@@ -43,10 +51,9 @@ def balance(
     """Find counterweights; show what is left of first and second order, before and after."""
     from crankmbs.design import balance as balanced
     from crankmbs.export import copy_scene
-    from crankmbs.scene.read import load_scene, scene_path
 
-    path, part_of = scene_path(scene), _share(share)
-    machine = load_scene(path)
+    path, machine = named_scene(scene)
+    part_of = _share(share)
     folder = results_folder(path, out)
     with progress("balancing"):
         weights = balanced(machine, part_of, cost_cap=cost_cap)
@@ -114,12 +121,7 @@ def _crank(scene: Scene, weights: Balance, cost_cap: float) -> list[str]:
 
 def _share(text: str) -> float:
     """A share such as "50%" or 0.5."""
-    number = text.strip()
-    percent = number.endswith("%")
-    try:
-        value = float(number.removesuffix("%")) * (0.01 if percent else 1.0)
-    except ValueError:
-        value = -1.0
+    value = share_of(text)
     if not 0.0 <= value <= 1.0:
         raise InputError(f'--share: must be from 0% to 100%, such as "50%"; {text!r} came')
     return value
@@ -132,8 +134,8 @@ def _report(name: str, weights: Balance) -> str:
         [
             f"{force.quantity}, {force.direction} [{force.units}]",
             f"{force.order:g}",
-            *(digits(*force.before), error_digits(force.before.error)),
-            *(digits(*force.after), error_digits(force.after.error)),
+            *cells(force.before),
+            *cells(force.after),
         ]
         for force in weights.remaining
     ]
@@ -215,10 +217,9 @@ def _may_share(scene: Scene) -> list[tuple[int, int]]:
 
 def _csv(weights: Balance) -> str:
     head = "quantity,direction,order,units,before,before_error,after,after_error"
-    return "\n".join([head, *map(_line, weights.remaining)]) + "\n"
-
-
-def _line(force: Remaining) -> str:
-    numbers = (*force.before, *force.after)
-    words = f"{force.quantity},{force.direction},{force.order:g},{force.units}"
-    return ",".join([words, *(f"{number:.12g}" for number in numbers)])
+    lines = [head]
+    for force in weights.remaining:
+        words = f"{force.quantity},{force.direction},{force.order:g},{force.units}"
+        numbers = (f"{number:.12g}" for number in (*force.before, *force.after))
+        lines.append(",".join([words, *numbers]))
+    return "\n".join(lines) + "\n"

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from typer import Exit, Option, echo
 
-from crankmbs.cli.options import SceneName
+from crankmbs.cli.options import SceneName, named_scene
 from crankmbs.cli.progress import progress
 from crankmbs.errors import InputError
 
@@ -28,13 +28,11 @@ def export(
     from crankmbs.export import copy_scene
     from crankmbs.export import export as exported
     from crankmbs.export.files import SUFFIXES, refused_kind
-    from crankmbs.scene.read import load_scene, scene_path
     from crankmbs.simulate import simulate
 
     if to not in SUFFIXES:
         raise InputError(f"--{refused_kind(to)}")
-    path = scene_path(scene)
-    loaded = load_scene(path)
+    path, loaded = named_scene(scene)
     target = out or Path(f"{path.stem}{SUFFIXES[to]}")
     with progress("exporting"):
         result = simulate(loaded) if to == "matlab" else None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,12 +10,12 @@ from typer import Exit, Option, echo
 
 from crankmbs.cli.folder import results_folder, wrote_into
 from crankmbs.cli.loads import loads_table
-from crankmbs.cli.options import NoFigures, OutBesideScene, SceneName, WrittenScene
+from crankmbs.cli.options import NoFigures, OutBesideScene, SceneName, WrittenScene, named_scene
 from crankmbs.cli.progress import progress
 from crankmbs.cli.text import heading, table
 from crankmbs.digits import digits, error_digits
 from crankmbs.errors import InputError, shown
-from crankmbs.scene.units import DEGREE, RPM
+from crankmbs.scene.units import DEGREE, RPM, share_of
 from crankmbs.storage.files import together
 
 if TYPE_CHECKING:
@@ -29,7 +28,6 @@ __all__ = ["flywheel"]
 _POINTS, _BEYOND = 13, 2.0  # of the curve drawn, and how far it goes beyond both inertias
 _NOTHING = 1e-9  # of W: a load that balances is none
 _LARGE = 0.2  # of the mean speed: as a bare number rather a percentage without its sign
-_SHARE = re.compile(r"\s*(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+)\s*(%?)\s*")
 
 
 def flywheel(
@@ -43,22 +41,20 @@ def flywheel(
 ) -> None:
     """Find the crank inertia that gives a fluctuation of speed on the settled cycle."""
     from crankmbs.design.flywheel import flywheel as sized
-    from crankmbs.scene.read import load_scene, scene_path
+    from crankmbs.measures import measure
 
-    match = _SHARE.fullmatch(fluctuation)
-    number = float(match[1]) * (0.01 if match[2] else 1.0) if match else math.nan
+    number = share_of(fluctuation)
     if not 0.0 < number < 2.0:
         raise InputError(
             "--fluctuation: must be a share of the mean speed above 0 and below 200 %, such as "
             f'"1 %" or 0.01; {shown(fluctuation)} came'
         )
-    if match and not match[2] and number >= _LARGE:
+    if "%" not in fluctuation and number >= _LARGE:
         raise InputError(
             f"--fluctuation: {number:g} without a unit is {100.0 * number:g} % of the mean speed; "
             f'write "{number:g} %", or "{100.0 * number:g} %" if that is meant'
         )
-    path = scene_path(scene)
-    machine = load_scene(path)
+    path, machine = named_scene(scene)
     folder = None if no_figures else results_folder(path, out)
     with progress("sizing"):
         wheel = sized(machine, number)
@@ -67,7 +63,8 @@ def flywheel(
     lines = [_report(path.stem, machine, wheel, before)]
     if wheel.status == 0:
         with progress("loads"):
-            lines += ["", loads, ""] if (loads := _loads(wheel, before)) else [""]
+            loads = loads_table(before, measure(wheel.result), "with it")
+        lines += ["", loads, ""] if loads else [""]
         if folder is not None:
             lines.append(wrote_into(folder, [_drawn(machine, wheel, folder)]))
         if write is not None:
@@ -84,13 +81,6 @@ def _before(scene: Scene) -> Measures | None:
 
     inertia = scene.crank.moment_of_inertia
     return fluctuations(scene, [inertia])[0] if inertia > 0.0 else None
-
-
-def _loads(wheel: Flywheel, before: Measures | None) -> str:
-    """Bearing loads with the scene's inertia, if it has any, and with the one that was sized."""
-    from crankmbs.measures import measure
-
-    return loads_table(before, measure(wheel.result), "with it")
 
 
 def _drawn(scene: Scene, wheel: Flywheel, folder: Path) -> str:

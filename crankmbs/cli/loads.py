@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from crankmbs.cli.text import table
-from crankmbs.digits import digits, error_digits
+from crankmbs.cli.text import cells, table
 
 if TYPE_CHECKING:
     from crankmbs.measures import Measures
@@ -21,17 +20,16 @@ def loads_table(before: Measures | None, after: Measures, words: str) -> str:
     """
     rows = []
     for joint in dict.fromkeys(force.joint for force in after.joints):
-        cells: list[str] = []
+        row = [f"{joint} [N]"]
         for measures in (before, after):
             if measures is None:
-                cells += ["-", "-"]
+                row += ["-", "-"]
                 continue
-            largest = max(
-                (j for j in measures.joints if j.joint == joint), key=lambda j: j.peak.value
-            )
-            cells += [digits(*largest.peak), error_digits(largest.peak.error)]
-        if any(j.peak.value > 0.0 for j in after.joints if j.joint == joint):
-            rows.append([f"{joint} [N]", *cells])
+            peaks = (j.peak for j in measures.joints if j.joint == joint)
+            largest = max(peaks, key=lambda peak: peak.value)
+            row += cells(largest)
+        if largest.value > 0.0:
+            rows.append(row)
     over = f"largest load over the {after.window.kind}"
     heading = [over, "before", "num. error", words, "num. error"]
     return table(heading, rows) if rows else ""

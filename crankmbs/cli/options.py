@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from typer import Argument, Option
+
+if TYPE_CHECKING:
+    from crankmbs.scene.scene import Scene
 
 __all__ = [
     "CostCap",
@@ -20,8 +23,8 @@ __all__ = [
     "Skip",
     "Until",
     "WrittenScene",
+    "named_scene",
 ]
-
 
 SceneName = Annotated[
     str, Argument(metavar="SCENE", help="A scene file, or the name of a shipped scene.")
@@ -51,3 +54,11 @@ Index = Annotated[
 Separator = Annotated[str | None, Option(help='";", ",", "|", tab or blank; else it is found.')]
 Decimal = Annotated[str | None, Option(help='"." or ","; else it is found.')]
 Skip = Annotated[int, Option(help="Lines at the beginning to leave out.")]
+
+
+def named_scene(name: str) -> tuple[Path, Scene]:
+    """The file of the scene that the argument SCENE names, and the scene."""
+    from crankmbs.scene.read import load_scene, scene_path
+
+    path = scene_path(name)
+    return path, load_scene(path)

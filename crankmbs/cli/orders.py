@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from crankmbs.cli.text import table
+from crankmbs.cli.text import cells, table
 from crankmbs.compare import AtAngle
-from crankmbs.digits import digits, error_digits
+from crankmbs.digits import digits
 from crankmbs.measures import EngineOrder, EngineOrders
 from crankmbs.report.readings import passed_at, reading_remarks, reading_tables
 from crankmbs.scene.units import RPM
@@ -77,8 +77,10 @@ def _lines(row: EngineOrder) -> list[list[str]]:
         there = [digits(theirs), _degrees(float(np.angle(closed[k])), theirs, least)]
         lines.append(
             [
-                *(name, f"{split.order[k]:g}", digits(size, split.error)),
-                *(error_digits(split.error), _degrees(float(split.phase[k]), size, split.error)),
+                name,
+                f"{split.order[k]:g}",
+                *cells((size, split.error)),
+                _degrees(float(split.phase[k]), size, split.error),
                 *(there if row.closed is not None else ["", ""]),
             ]
         )

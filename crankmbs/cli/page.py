@@ -7,7 +7,7 @@ from typing import Annotated
 
 from typer import Option, echo, launch
 
-from crankmbs.cli.options import SceneName
+from crankmbs.cli.options import SceneName, named_scene
 from crankmbs.storage.files import text_in_one_move
 
 __all__ = ["demo", "page"]
@@ -40,7 +40,6 @@ def page(
 
 def _write(scene: str, target: Path) -> None:
     from crankmbs.page import page_of
-    from crankmbs.scene.read import load_scene, scene_path
 
-    path = scene_path(scene)
-    text_in_one_move(target, page_of(load_scene(path), path.stem))
+    path, loaded = named_scene(scene)
+    text_in_one_move(target, page_of(loaded, path.stem))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from typer import Argument, Option, echo
 
@@ -13,9 +13,6 @@ from crankmbs.cli.measured import as_options, naming_options, table_file
 from crankmbs.cli.options import Decimal, Index, NoFigures, Separator, Skip
 from crankmbs.cli.progress import progress
 from crankmbs.storage.files import together
-
-if TYPE_CHECKING:
-    from crankmbs.indicated import Indicated
 
 __all__ = ["pressure"]
 
@@ -101,7 +98,10 @@ def _convert(
             if indicated.speed is not None:
                 names.append(indicated.speed.save(part / f"{target.stem}_speed.csv").name)
             if not no_figures:
-                names += _draw(indicated, part, target.stem)
+                from crankmbs.figures import save_indicated_figures  # matplotlib only here
+
+                files = save_indicated_figures(indicated, part, target.stem)
+                names += [file.name for file in files]
     lines = [as_options(sentence) for sentence in indicated.sentences]
     lines += ["", wrote_into(target.parent, names), "as [gas] of a scene:"]
     # a scene's paths are relative to its folder; a new one's stands where the command is given
@@ -112,9 +112,3 @@ def _convert(
         of_speed = (within / names[1]).as_posix()
         lines += ["as [motion] of a scene:", f"  {motion_line(of_speed)}"]
     echo("\n".join(lines))
-
-
-def _draw(indicated: Indicated, folder: Path, stem: str) -> list[str]:
-    from crankmbs.figures import save_indicated_figures  # matplotlib only here
-
-    return [file.name for file in save_indicated_figures(indicated, folder, stem)]

@@ -84,7 +84,7 @@ _EVENT_HEADINGS = ["event", "time [s]", "crank angle [deg]", "crank speed [rpm]"
 
 def _about(result: Result, measures: Measures) -> str:
     time, angle, speed = map(result.sampled, ("time", "crank_angle", "crank_speed"))
-    turned = (angle[-1] - angle[0]) / (2.0 * math.pi)
+    turned, cost = (angle[-1] - angle[0]) / (2.0 * math.pi), result.cost
     last = "last period" if measures.window.kind == "last period" else "last cycle"
     extent = "" if result.scene.run.every is not None else f"; only the {last} is kept"
     sense = ", backwards" if turned < 0.0 else ""
@@ -103,7 +103,8 @@ def _about(result: Result, measures: Measures) -> str:
             *_events(result),
             _error_line(result),
             f"{'energy':<12} closes to {_closure(measures)}",
-            _cost_line(result),
+            f"{'cost':<12} {digits(cost.wall_time, most=2)} s of computing, "
+            f"{cost.evaluations} evaluations, {cost.steps} steps",
         ]
     )
 
@@ -149,11 +150,3 @@ def _error_line(result: Result) -> str:
     ]
     alone = f"; errors of the given {' and '.join(given)} are not in it" if given else ""
     return f"{'num. error':<12} {error.estimated:.1e} relative, {error.asked:.0e} asked for{alone}"
-
-
-def _cost_line(result: Result) -> str:
-    cost = result.cost
-    return (
-        f"{'cost':<12} {digits(cost.wall_time, most=2)} s of computing, "
-        f"{cost.evaluations} evaluations, {cost.steps} steps"
-    )

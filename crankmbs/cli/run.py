@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 from typer import Exit, Option, echo
 
 from crankmbs.cli.folder import results_folder, wrote
-from crankmbs.cli.options import CostCap, NoFigures, Out, Rtol, SceneName, Until
+from crankmbs.cli.options import CostCap, NoFigures, Out, Rtol, SceneName, Until, named_scene
 from crankmbs.cli.progress import progress
-from crankmbs.errors import InputError
+from crankmbs.errors import InputError, at_place
 from crankmbs.storage.files import together
 
 if TYPE_CHECKING:
@@ -53,15 +53,16 @@ def run(
     """Run a scene: print its measures, write data and figures."""
     from crankmbs.choose import choose, chosen
     from crankmbs.cli.report import report
+    from crankmbs.compare.at import angle_of
     from crankmbs.measures import measure
-    from crankmbs.scene.read import load_scene, scene_path
     from crankmbs.simulate import simulate
 
-    path = scene_path(scene)
+    path, machine = named_scene(scene)
     options = {"formulation": formulation, "rtol": rtol, "until": until, "every": every}
-    machine = override(load_scene(path), **options)
+    machine = override(machine, **options)
     choice = choose(machine, machine.run.formulation)
-    angles = [_angle(text) for text in at or ()]
+    with at_place("--at"):
+        angles = [angle_of(text) for text in at or ()]
     if confirm and choice.formulation == "multibody":
         raise InputError(
             "--confirm compares a run with multibody, and this run is multibody itself; "
@@ -138,16 +139,6 @@ def _draw(outcome: _Outcome, folder: Path) -> list[str]:
         differences = outcome.confirmation.period
         files.append(figures.save_differences(outcome.result, differences, folder))
     return [file.name for file in files]
-
-
-def _angle(text: str) -> float:
-    """A crank angle of the option --at [rad]."""
-    from crankmbs.compare.at import angle_of
-
-    try:
-        return angle_of(text)
-    except InputError as error:
-        raise InputError(f"--at: {error}") from None
 
 
 def override(scene: Scene, **options: Any) -> Scene:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 from typer import Argument, echo
 
-from crankmbs.cli.options import SceneName
+from crankmbs.cli.options import SceneName, named_scene
 from crankmbs.errors import InputError, OutputError
 from crankmbs.scene.shipped import shipped_scenes
 from crankmbs.storage.files import text_in_one_move
@@ -46,8 +46,6 @@ def check(scene: SceneName) -> None:
     """Read a scene and say how it would be run; run nothing."""
     from crankmbs.choose import choose
     from crankmbs.report.machine import describe
-    from crankmbs.scene.read import load_scene, scene_path
 
-    path = scene_path(scene)
-    loaded = load_scene(path)
+    path, loaded = named_scene(scene)
     echo(describe(str(path), loaded, choose(loaded, loaded.run.formulation)))

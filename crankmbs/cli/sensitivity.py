@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Annotated
 
 from typer import Option
 
-from crankmbs.cli.options import SceneName
+from crankmbs.cli.options import SceneName, named_scene
 from crankmbs.cli.progress import progress
 from crankmbs.cli.sweep import answered, varied
-from crankmbs.cli.text import cells, table, with_unit
+from crankmbs.cli.text import cells, table
 from crankmbs.digits import digits
+from crankmbs.display import with_unit
 from crankmbs.errors import InputError
 
 if TYPE_CHECKING:
@@ -41,7 +42,6 @@ def sensitivity(
     workers: Annotated[int | None, Option(help="Processes, for indices.")] = None,
 ) -> None:
     """Show derivatives of measures at a scene, or what share of their spread is whose."""
-    from crankmbs.scene.read import load_scene, scene_path
     from crankmbs.sweep.indices import sobol_indices
 
     ranges = [knob for knob in vary if "=" in knob]
@@ -50,8 +50,8 @@ def sensitivity(
             "--vary: names alone ask for derivatives, names with ranges for Sobol indices; give "
             "one kind"
         )
-    path = scene_path(scene)
-    loaded, words = load_scene(path), measures or ["fluctuation"]
+    path, loaded = named_scene(scene)
+    words = measures or ["fluctuation"]
     with progress("solving"):
         if ranges:
             over = varied(ranges)

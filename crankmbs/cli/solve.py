@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Annotated
 
 from typer import Option
 
-from crankmbs.cli.options import SceneName
+from crankmbs.cli.options import SceneName, named_scene
 from crankmbs.cli.progress import progress
 from crankmbs.cli.sweep import answered, varied
-from crankmbs.cli.text import cells, table, with_unit
-from crankmbs.display import displayed
+from crankmbs.cli.text import cells, table
+from crankmbs.display import displayed, with_unit
 from crankmbs.errors import InputError
 
 if TYPE_CHECKING:
@@ -38,7 +38,6 @@ def solve(
     ] = None,
 ) -> None:
     """Find the value with which a measure is what is wanted, or values with which it is least."""
-    from crankmbs.scene.read import load_scene, scene_path
     from crankmbs.sweep.minimize import minimize
     from crankmbs.sweep.solve import solve as solved
 
@@ -47,8 +46,8 @@ def solve(
             'give --for "fluctuation = 1 %" or --minimize "peak crank pin force", the latter '
             'perhaps with --subject-to "fluctuation <= 2 %"'
         )
-    path = scene_path(scene)
-    loaded, ranges = load_scene(path), varied(vary)
+    path, loaded = named_scene(scene)
+    ranges = varied(vary)
     with progress("solving"):
         if condition is not None:
             answer = solved(loaded, ranges, condition)

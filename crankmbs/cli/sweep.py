@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Annotated
 
 from typer import Exit, Option, echo
 
-from crankmbs.cli.options import SceneName
-from crankmbs.cli.text import cells, heading, table, with_unit
+from crankmbs.cli.options import SceneName, named_scene
+from crankmbs.cli.text import cells, heading, table
+from crankmbs.display import with_unit
 from crankmbs.errors import CrankmbsError, InputError, shown
 
 if TYPE_CHECKING:
@@ -63,14 +64,13 @@ def sweep(
     ] = None,
 ) -> None:
     """Run a scene with some of its numbers varied, and store the measures of each case."""
-    from crankmbs.scene.read import load_scene, scene_path
     from crankmbs.sweep.plan import check_possible, plan_of
     from crankmbs.sweep.summary import summary
 
-    path = scene_path(scene)
+    path, loaded = named_scene(scene)
     with _as_options():
         over = _cases(vary or [], cases, (sample, n, seed))
-        plan = plan_of(load_scene(path), over, keep)
+        plan = plan_of(loaded, over, keep)
     if workers is not None and cluster is not None:
         raise InputError("--workers and --cluster both say where cases are computed; give one")
     _check_free(out, resume)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from crankmbs.digits import digits, error_digits
 from crankmbs.display import displayed
 
-__all__ = ["cells", "heading", "table", "with_unit"]
+__all__ = ["cells", "heading", "table"]
 
 
 def heading(name: str, title: str) -> str:
@@ -38,8 +38,3 @@ def cells(estimate: tuple[float, float], units: str = "1", per: str = "1") -> li
     scale = displayed(units)[0] / displayed(per)[0]
     value, error = (part / scale for part in estimate)
     return [digits(value, error), error_digits(error)]
-
-
-def with_unit(name: str, units: str) -> str:
-    """A name as a heading; in brackets the unit that people read for these SI units, if any."""
-    return f"{name} [{displayed(units)[1]}]" if units not in ("", "1") else name

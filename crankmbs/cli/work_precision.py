@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from typer import Exit, echo
 
 from crankmbs.cli.folder import results_folder, wrote
-from crankmbs.cli.options import Out, SceneName
+from crankmbs.cli.options import Out, SceneName, named_scene
 from crankmbs.cli.progress import progress
 from crankmbs.cli.text import heading, table
 from crankmbs.digits import error_digits
@@ -39,11 +39,9 @@ def measure_scene(name: str, *, out: Path | None, beside: Beside | None = None) 
     ------
     CrankmbsError : bad scene or folder; before anything runs
     """
-    from crankmbs.scene.read import load_scene, scene_path
     from crankmbs.work_precision import save_work_precision, work_precision
 
-    path = scene_path(name)
-    scene = load_scene(path)
+    path, scene = named_scene(name)
     folder = results_folder(path, out)
     with progress("speed against error"):
         outcome = work_precision(scene, beside)
@@ -65,7 +63,10 @@ def _errors(outcome: WorkPrecision) -> str:
     names = outcome.quantities
     headings = ["relative error", "setting", "stated", *names, "time [ms]", "runs", "evaluations"]
     floors = outcome.reference.floors
-    rows = [[row.contender, _setting(row), *_numbers(row, floors)] for row in outcome.rows]
+    rows = [
+        [row.contender, f"{row.knob} {row.setting:g}", *_numbers(row, floors)]
+        for row in outcome.rows
+    ]
     of_reference = [error_digits(floors[name]) for name in names]
     return table(headings, [*rows, ["reference itself", "", "", *of_reference, "", "", ""]])
 
@@ -100,10 +101,6 @@ def _sentences(outcome: WorkPrecision) -> list[str]:
         *outcome.notes,
         *outcome.machine,
     ]
-
-
-def _setting(row: Row) -> str:
-    return f"{row.knob} {row.setting:g}"
 
 
 def _error(value: float | None, floor: float = 0.0) -> str:

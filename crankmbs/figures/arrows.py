@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +16,8 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
 __all__ = ["BODIES", "COLOUR", "Arrows", "Force", "draw_bar", "forces_on", "largest"]
+
+Read = Callable[[str], Array]
 
 BODIES = ("piston", "rod", "crank")
 COLOUR = {"gas": "#b85400", "wall": "#00805c", "pin": "#0068a5", "bearing": "#8b3f86"}
@@ -40,62 +43,61 @@ class Force:
     pushes: Array | None = None
 
 
-def forces_on(body: str, scene: Scene, parts: Mechanism, data: dict[str, Array]) -> list[Force]:
+def forces_on(body: str, scene: Scene, parts: Mechanism, read: Read) -> list[Force]:
     """The forces on "piston", "rod" or "crank" of every cylinder, weights apart.
 
-    parts : at the samples; data : variables by name, shape (n,) or (n, cylinders)
+    parts : at the samples; read : a variable by its name there, shape (n,) or (n, cylinders)
     """
     draw = {"piston": _on_piston, "rod": _on_rod, "crank": _on_crank}[body]
     count = len(scene.cylinders)
-    forces = [force for k in range(count) for force in draw(k, scene, parts, data)]
+    forces = [force for k in range(count) for force in draw(k, scene, parts, read)]
     if body == "crank":
-        force = np.stack([data["main_bearing_force_x"], data["main_bearing_force_y"]], axis=-1)
+        force = np.stack([read("main_bearing_force_x"), read("main_bearing_force_y")], axis=-1)
         forces.append(Force("bearings on crank", "bearing", None, np.zeros_like(force), force))
     return forces
 
 
-def _on_piston(k: int, scene: Scene, parts: Mechanism, data: dict[str, Array]) -> list[Force]:
+def _on_piston(k: int, scene: Scene, parts: Mechanism, read: Read) -> list[Force]:
     pin, corners = parts.piston_pin[:, k], parts.piston[:, k]
-    none = np.zeros_like(data["side_force"])
+    pressed = read("side_force")
+    none = np.zeros_like(pressed)
 
     def downwards(variable: str) -> Array:
-        return in_engine_frame(scene, -data[variable], none)[:, k]
+        return in_engine_frame(scene, -read(variable), none)[:, k]
 
-    side = in_engine_frame(scene, none, data["side_force"])[:, k]
+    side = in_engine_frame(scene, none, pressed)[:, k]
     forces = [
         Force("wall on piston", "wall", k, pin, side),
-        Force("rod on piston", "pin", k, pin, _of_pin(k, scene, data, "piston_pin")),
+        Force("rod on piston", "pin", k, pin, _of_pin(k, scene, read, "piston_pin")),
     ]
-    if "friction_force" in data:
-        away = np.where(data["side_force"][:, k, None] > 0.0, -0.5, 0.5)
+    if scene.friction is not None:
+        away = np.where(pressed[:, k, None] > 0.0, -0.5, 0.5)
         at = pin + away * (corners[:, 0] - corners[:, 3])  # on the side that the wall presses
         rubs = downwards("friction_force")
         forces.append(Force("friction on piston", "bearing", k, at, rubs))
-    if "applied_force" in data:
+    if scene.force:
         applied = downwards("applied_force")
         forces.append(Force("applied force on piston", "bearing", k, pin, applied))
-    if "gas_force" in data:
-        crown = 0.5 * (corners[:, 1] + corners[:, 2])
-        gas = downwards("gas_force")
-        forces.append(Force("gas on piston", "gas", k, crown, gas, pushes=crown - pin))
-    return forces
+    crown = 0.5 * (corners[:, 1] + corners[:, 2])
+    gas = downwards("gas_force")
+    return [*forces, Force("gas on piston", "gas", k, crown, gas, pushes=crown - pin)]
 
 
-def _on_rod(k: int, scene: Scene, parts: Mechanism, data: dict[str, Array]) -> list[Force]:
-    small, big = (_of_pin(k, scene, data, pin) for pin in ("piston_pin", "crank_pin"))
+def _on_rod(k: int, scene: Scene, parts: Mechanism, read: Read) -> list[Force]:
+    small, big = (_of_pin(k, scene, read, pin) for pin in ("piston_pin", "crank_pin"))
     return [
         Force("piston on rod", "pin", k, parts.piston_pin[:, k], -small),
         Force("crank on rod", "bearing", k, parts.crank_pin[:, k], big),
     ]
 
 
-def _on_crank(k: int, scene: Scene, parts: Mechanism, data: dict[str, Array]) -> list[Force]:
-    force = -_of_pin(k, scene, data, "crank_pin")
+def _on_crank(k: int, scene: Scene, parts: Mechanism, read: Read) -> list[Force]:
+    force = -_of_pin(k, scene, read, "crank_pin")
     return [Force("rod on crank", "pin", k, parts.crank_pin[:, k], force)]
 
 
-def _of_pin(k: int, scene: Scene, data: dict[str, Array], pin: str) -> Array:
-    return in_engine_frame(scene, data[f"{pin}_force_x"], data[f"{pin}_force_y"])[:, k]
+def _of_pin(k: int, scene: Scene, read: Read, pin: str) -> Array:
+    return in_engine_frame(scene, read(f"{pin}_force_x"), read(f"{pin}_force_y"))[:, k]
 
 
 def largest(forces: list[Force]) -> float:

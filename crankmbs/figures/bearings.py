@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crankmbs.figures.polar import ENGINE, THROW, alike, coinciding, draw_polar
-from crankmbs.figures.style import STYLE, footer, one_curve_each, panels
+from crankmbs.figures.style import STYLE, footer, one_curve_each, panels, whose
 from crankmbs.figures.view import Plane, View
 
 __all__ = ["bearings_figure"]
@@ -50,7 +50,7 @@ def bearings_figure(view: View) -> Figure:
 
 def _draw_journals(view: View, shell: Axes, journal: Axes) -> None:
     force = view.force("main_journal_force")
-    labels = {group[0]: _named("main journal", group) for group in _shared(view, force)}
+    labels = {group[0]: whose(group, "main journal") for group in _shared(view, force)}
     turning = force * np.exp(-1j * np.radians(view.degrees))[:, None]
     degrees = np.broadcast_to(view.degrees[:, None], force.shape)
     draw_polar(shell, -force, degrees, labels, ENGINE)
@@ -93,10 +93,6 @@ def _draw_pins(view: View, shell: Axes, pin: Axes) -> None:
         pins = [turned[:, numbers == throw].sum(axis=1) for throw in range(count)]
         firsts = [throws.numbers.index(throw) for throw in range(count)]
         turned, cycles = np.stack(pins, axis=1), cycles[:, firsts]
-        labels = {g[0]: _named("shared pin", g) for g in coinciding(view, cycles, turned)}
+        labels = {g[0]: whose(g, "shared pin") for g in coinciding(view, cycles, turned)}
     draw_polar(pin, turned, cycles, labels, THROW)
     pin.set_title("load on crank pins, turning with the throw")
-
-
-def _named(part: str, group: list[int]) -> str:
-    return f"{part}{'s' * (len(group) > 1)} {', '.join(str(k + 1) for k in group)}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -72,8 +73,7 @@ def cycles_figure(result: Result) -> Figure:
                 axes[1].plot(edges, np.repeat(imep[:, group[0]], 2), **line, label=label)
         keep_flat(axes[1], np.concatenate([cycles.values(name) / BAR for name in names]))
         axes[1].set_ylabel("indicated mean\neffective pressure [bar]")
-    named = marks(result)
-    mark_events(axes[0], named, _among(np.array([mark.time for mark in named]), cycles))
+    mark_events(axes[0], result, lambda mark: _among(mark.time, cycles))
     for ax in axes:
         ax.set_xlim(edges[0], edges[-1])
         ax.locator_params("x", integer=True)
@@ -85,23 +85,24 @@ def cycles_figure(result: Result) -> Figure:
     return figure
 
 
-def _among(time: Array, cycles: Table) -> Array:
-    """Where times [s] lie on an axis on which cycle n covers n - 1/2 to n + 1/2; NaN in none."""
+def _among(time: float, cycles: Table) -> float:
+    """Where a time [s] lies on an axis on which cycle n covers n - 1/2 to n + 1/2; NaN in none."""
     begins, durations = cycles.values("time"), cycles.values("duration")
-    k = np.maximum(np.searchsorted(begins, time, side="right") - 1, 0)
-    share = (time - begins[k]) / durations[k]
-    inside = (share >= -_HAIR) & (share <= 1.0 + _HAIR)
-    return np.where(inside, cycles.values("cycle")[k] - 0.5 + share, np.nan)
+    k = max(int(np.searchsorted(begins, time, side="right")) - 1, 0)
+    share = float((time - begins[k]) / durations[k])
+    inside = -_HAIR <= share <= 1.0 + _HAIR
+    return float(cycles.values("cycle")[k]) - 0.5 + share if inside else math.nan
 
 
-def mark_events(ax: Axes, named: list[Mark], at: Array) -> None:
+def mark_events(ax: Axes, result: Result, place: Callable[[Mark], float]) -> None:
     """Thin labelled lines at the first marks of a run, each word at least once; those of one word
     so close that their words would cover one another have one label, which says how many they are.
 
-    at : shape (n,), where each stands on the panel's axis
+    place : of a mark, where it stands on the panel's axis
     """
     low, high = ax.get_xlim()
-    words = [mark.words for mark in named]
+    named = [] if result.keep is None else marks(result)
+    words, at = [mark.words for mark in named], [place(mark) for mark in named]
     inside = [k for k in range(len(named)) if low <= at[k] <= high]
     often = {k: [words[j] for j in inside if j < k].count(words[k]) for k in inside}
     shown = sorted(sorted(inside, key=often.__getitem__)[:_MOST_MARKS])  # each word at least once
@@ -155,9 +156,7 @@ def transient_figure(result: Result) -> Figure:
     for ax in axes:
         ax.axhline(0.0, color="0.55", linewidth=1.0)
         ax.tick_params(labelbottom=ax is axes[-1])
-    if result.keep is not None:
-        named = marks(result)
-        mark_events(axes[0], named, np.array([mark.time for mark in named]))
+    mark_events(axes[0], result, lambda mark: mark.time)
     axes[-1].set_xlabel("time [s]")
     legend(figure, *axes[1:])
     drawn = "crank_speed", "crank_torque", "external_torque", *_JOINTS.values()

@@ -91,8 +91,6 @@ def flywheel_figure(wheel: Flywheel, curve: Sequence[tuple[float, float]]) -> Fi
     present = at - wheel.added
     if min(inertia) <= present <= max(inertia):
         ax.axvline(present, color="0.55", linewidth=1.0, label=f"the scene's {present:.4g} kg m²")
-    ax.set_xscale("log")
-    ax.set_yscale("log")
     for axis in (ax.xaxis, ax.yaxis):
         logarithmic(axis)
     ax.set_xlabel("inertia of crank and flywheel [kg m²]")

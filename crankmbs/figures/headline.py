@@ -33,8 +33,8 @@ def comparison_headline(rows: Sequence[Deviation], *, independent: bool) -> tupl
     name = short_name(row.reference) if lecture else _FORMULA
     if math.isnan(_share(row)):
         size = f"{digits(row.size.largest, most=3)} {OBSERVABLES[row.quantity].units}"
-        return f"{_capital(row.quantity)}: the run has none, {name} up to {size}", ""
-    first = f"{_capital(row.quantity)}: error of {name} up to {_percent(_share(row))}"
+        return f"{row.quantity.capitalize()}: the run has none, {name} up to {size}", ""
+    first = f"{row.quantity.capitalize()}: error of {name} up to {_percent(_share(row))}"
     second = _where(row.size.angle) + ("" if lecture else f": {row.reference}")
     shares = [_share(each) for each in rows if each.reference == CLOSED_FORM]
     if independent and not any(map(math.isnan, shares)):
@@ -45,7 +45,7 @@ def comparison_headline(rows: Sequence[Deviation], *, independent: bool) -> tupl
 def budget_headline(splits: Sequence[Split]) -> tuple[str, str]:
     """The formula's largest error, and the cause that is worth most."""
     split = max(splits, key=lambda each: _weight(each.share(each.total)))
-    share, quantity = split.share(split.total), _capital(split.quantity)
+    share, quantity = split.share(split.total), split.quantity.capitalize()
     formula = short_name(split.reference) if split.is_lecture else _FORMULA
     if math.isnan(share):
         return f"{quantity}: the run has none, {formula} has", ""
@@ -72,7 +72,3 @@ def _percent(share: float) -> str:
 
 def _where(angle: float) -> str:
     return f"of the peak, at {math.degrees(angle):.0f} degrees"
-
-
-def _capital(quantity: str) -> str:
-    return quantity[0].upper() + quantity[1:]

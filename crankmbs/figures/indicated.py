@@ -62,7 +62,7 @@ def volume_figure(indicated: Indicated) -> Figure:
         label = f"{_name(each)}, imep {np.mean(each.imep) / BAR:.4g} bar"
         axes[0].plot(shape.travel(angle), mean, **line_of(k), label=label)
         if with_log:
-            axes[1].loglog(shape.volume(angle), np.maximum(mean, 1e-3), **line_of(k))
+            axes[1].plot(shape.volume(angle), np.maximum(mean, 1e-3), **line_of(k))
     axes[0].set_xlabel("piston displacement from TDC over the stroke [1]")
     for ax in axes:
         ax.set_ylabel(_pressure(indicated))

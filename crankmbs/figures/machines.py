@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -26,15 +27,6 @@ _COLOUR, _TRACK = "0.1", "0.75"
 _LONG, _SHORT = 0.84, 0.94  # of the radius: where the pointer and the other ticks begin
 _RIM = 0.1  # of the crank radius: room around the ring
 _ABOVE = 0.7  # of the crank radius: room above the heads for the gas's arrow
-_SEEN = (
-    "side_force",
-    "gas_force",
-    "friction_force",
-    "applied_force",
-    "main_bearing_force_x",
-    "main_bearing_force_y",
-)
-_PINS = tuple(f"{pin}_pin_force_{axis}" for pin in ("piston", "crank") for axis in "xy")
 
 
 class Ring:
@@ -118,12 +110,10 @@ def shown_forces(
 ) -> list[Force]:
     """The forces on a body at the frames, linear between samples, of the cylinders that are drawn;
     the bearings' on the crank, all cylinders' together, where all are in one drawing."""
-    known = [name for name in (*_SEEN, *_PINS) if name in view.result.variables]
-    data = {name: at_frames(view, frames, name) for name in known}
+    forces = forces_on(body, view.scene, parts, partial(at_frames, view, frames))
     drawn = [k for cut in cuts for k in cut]
-    if len(cuts) == 1 and len(drawn) == len(view.scene.cylinders):
-        return forces_on(body, view.scene, parts, data)
-    return [each for each in forces_on(body, view.scene, parts, data) if each.cylinder in drawn]
+    every = len(cuts) == 1 and len(drawn) == len(view.scene.cylinders)
+    return [each for each in forces if every or each.cylinder in drawn]
 
 
 def at_frames(view: View, frames: Frames, name: str) -> Array:

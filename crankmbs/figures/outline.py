@@ -40,16 +40,6 @@ class Mechanism:
     gas: Array
     liner: Array
 
-    @property
-    def bounds(self) -> tuple[Array, Array]:
-        """Lowest and highest X and Y [m] of everything at every angle, each of shape (2,)."""
-        radius = float(np.max(np.hypot(*self.crank_pin[0].T)))
-        corners = np.concatenate([self.piston.reshape(-1, 2), self.liner.reshape(-1, 2)])
-        return (
-            np.minimum(corners.min(axis=0), -radius),
-            np.maximum(corners.max(axis=0), radius),
-        )
-
 
 def mechanism(scene: Scene, crank_angle: ArrayLike) -> Mechanism:
     """Place every part at the crank angles. Pins are exact.

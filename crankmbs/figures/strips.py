@@ -27,7 +27,6 @@ from crankmbs.figures.style import (
 from crankmbs.figures.view import View, over_time
 from crankmbs.measures.peaks import torque_of_rods
 from crankmbs.numerics.arrays import Array
-from crankmbs.result.event_words import marks
 from crankmbs.scene.units import BAR, RPM
 
 __all__ = [
@@ -56,10 +55,11 @@ def speed_figure(view: View) -> Figure:
         time, angle, speed = map(source, ("time", "crank_angle", "crank_speed"))
         _speed(axes[0], time if in_time else np.degrees(angle) / 360.0, speed)
         axes[0].set_xlabel(f"{'time [s]' if in_time else 'crank angle [rev]'}, whole run")
-        if view.result.keep is not None:
-            named = marks(view.result)
-            at = [mark.time if in_time else mark.crank_angle / math.tau for mark in named]
-            mark_events(axes[0], named, np.array(at))
+        mark_events(
+            axes[0],
+            view.result,
+            lambda mark: mark.time if in_time else mark.crank_angle / math.tau,
+        )
         mark_points(axes[0])
     if last:
         _speed(axes[-1], *view.drawn(view.along, view.values("crank_speed")))

@@ -13,7 +13,7 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 from matplotlib import rc_context, rcParams
 from matplotlib.axes import Axes
-from matplotlib.axis import Axis
+from matplotlib.axis import XAxis, YAxis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
@@ -153,8 +153,9 @@ def tiles(
     return figure, axes[:count]
 
 
-def logarithmic(axis: Axis) -> None:
-    """Plain numbers on a logarithmic axis of some decades, at 1, 2 and 5 of each."""
+def logarithmic(axis: XAxis | YAxis) -> None:
+    """Make an axis logarithmic, with plain numbers at 1, 2 and 5 of each decade."""
+    getattr(axis.axes, f"set_{axis.axis_name}scale")("log")
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axis.set_minor_locator(NullLocator())
     axis.set_major_formatter(lambda value, _: f"{value:g}")
@@ -366,14 +367,14 @@ def grouped(items: Iterable[T], alike: Callable[[T, T], bool]) -> list[list[T]]:
     return groups
 
 
-def whose(cylinders: list[int]) -> str:
-    """Legend entry of the cylinders of one curve, counted from 0.
+def whose(group: list[int], part: str = "cylinder") -> str:
+    """Legend entry of the cylinders, or other parts, of one curve, counted from 0.
 
     >>> whose([0, 3])
     'cylinders 1, 4'
     """
-    numbers = ", ".join(str(k + 1) for k in cylinders)
-    return f"cylinder{'s' if len(cylinders) > 1 else ''} {numbers}"
+    numbers = ", ".join(str(k + 1) for k in group)
+    return f"{part}{'s' * (len(group) > 1)} {numbers}"
 
 
 def _seen(panel: Array) -> float:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -16,7 +15,7 @@ from matplotlib.ticker import MaxNLocator
 
 from crankmbs.digits import error_digits
 from crankmbs.display import displayed
-from crankmbs.errors import InputError
+from crankmbs.errors import InputError, at_place
 from crankmbs.figures.style import COLOURS, STYLE, caption, label_contours, logarithmic, tiles
 from crankmbs.numerics.arrays import Array
 from crankmbs.sweep.columns import Column
@@ -49,11 +48,6 @@ class _Drawn(NamedTuple):
     limit: float | None
     over: tuple[Any, str] | None = None
 
-    @property
-    def label(self) -> str:
-        """What it is, with its unit."""
-        return f"{self.words} [{self.unit}]"
-
 
 class _Axis(NamedTuple):
     """A knob or a measure as an axis: where its values stand, of a measure over a grid a table, and
@@ -69,7 +63,6 @@ class _Axis(NamedTuple):
         if self.words:
             axis.set_ticks(self.at, self.words)
         elif self.log:
-            getattr(axis.axes, f"set_{axis.axis_name}scale")("log")
             logarithmic(axis)
         else:
             axis.set_major_locator(MaxNLocator(6, steps=_ROUND))
@@ -108,10 +101,12 @@ def sweep_figure(
     reading = reading_of(show, columns)
     values, error = _of_cases(data, reading)
     scale, unit = _on_axis(reading.about.units)
-    at = None if limit is None else _limit(limit, reading) / scale
+    with at_place("limit"):
+        at = None if limit is None else amount_of(limit, reading) / scale
     drawn = _Drawn(values / scale, reading.words, unit, at)
     if over is not None:
-        measure = _measure(over, columns)
+        with at_place("over"):
+            measure = reading_of(over, columns)
         size, its_unit = _on_axis(measure.about.units)
         label = f"{measure.words} [{_typeset(its_unit)}]"
         drawn = drawn._replace(over=(_of_cases(data, measure)[0] / size, label))
@@ -121,7 +116,7 @@ def sweep_figure(
     else:
         names = knobs or [str(name) for name in data.coords if data[name].dims == ("case",)]
         figure = _over_each(data, drawn, names, joined=bool(knobs))
-    figure.suptitle(drawn.label, fontsize=14)
+    figure.suptitle(f"{drawn.words} [{unit}]", fontsize=14)
     missing = int(np.count_nonzero(np.isnan(values.values)))
     lines = [str(data.attrs.get("title", "")), f"{values.size} cases; numerical error at most "]
     lines[1] += f"{error_digits(error / scale)} {unit}"
@@ -132,26 +127,12 @@ def sweep_figure(
     return figure
 
 
-def _measure(over: str, columns: Mapping[str, Column]) -> Reading:
-    try:
-        return reading_of(over, columns)
-    except InputError as error:
-        raise InputError(f"over: {error}") from None
-
-
 def _of_cases(data: xr.Dataset, reading: Reading) -> tuple[xr.DataArray, float]:
     """A measure of every case and the largest of its errors."""
     values, errors = reading.of(data)
     if not np.isfinite(values.values).any():
         raise InputError(f"{reading.words}: no case of this sweep has it")
     return values, float(errors.max())
-
-
-def _limit(text: str, reading: Reading) -> float:
-    try:
-        return amount_of(text, reading)
-    except InputError as error:
-        raise InputError(f"limit: {error}") from None
 
 
 def _varied(data: xr.Dataset) -> xr.Dataset:
@@ -164,8 +145,12 @@ def _varied(data: xr.Dataset) -> xr.Dataset:
 def _over(data: xr.Dataset, drawn: _Drawn, knobs: list[str]) -> Figure:
     """Filled contours over the first two knobs, a panel for each combination of the others."""
     y, x, *further = knobs
-    stacked = drawn.values.stack(panel=further) if further else drawn.values.expand_dims("panel")
-    tables = stacked.transpose("panel", y, x)
+
+    def by_panel(values: xr.DataArray) -> xr.DataArray:
+        stacked = values.stack(panel=further) if further else values.expand_dims("panel")
+        return stacked.transpose("panel", y, x)
+
+    tables = by_panel(drawn.values)
     count = tables.sizes["panel"]
     if count > _MOST:
         raise InputError(
@@ -178,8 +163,7 @@ def _over(data: xr.Dataset, drawn: _Drawn, knobs: list[str]) -> Figure:
     for k, ax in enumerate(axes):
         if drawn.over is not None:
             along, label = drawn.over
-            parts = along.stack(panel=further) if further else along.expand_dims("panel")
-            across = _measured(parts.transpose("panel", y, x).values[k], label)
+            across = _measured(by_panel(along).values[k], label)
         panel = drawn._replace(values=tables.values[k])
         filled = _contours(ax, (across, _axis(data, y)), panel, levels)
         if further:

@@ -19,10 +19,10 @@ from crankmbs.compare import (
     short_name,
 )
 from crankmbs.digits import digits, error_digits
-from crankmbs.display import displayed
+from crankmbs.display import displayed, with_unit
 from crankmbs.mechanics.peaks import peak, relative_errors
 from crankmbs.mechanics.variables import EVERY
-from crankmbs.report.rows import Table, labelled
+from crankmbs.report.rows import Table
 from crankmbs.result import Result
 
 __all__ = [
@@ -133,7 +133,7 @@ def comparison_table(comparison: Comparison) -> Table:
         peak = next(iter(compared.values())).peak
         last = list(compared.values())[-1]
         shares = (
-            _share(percent(compared[name].size.largest, peak)) if name in compared else ""
+            digits(percent(compared[name].size.largest, peak), most=3) if name in compared else ""
             for name in references
         )
         angle = f"{math.degrees(last.size.angle):.0f}"
@@ -150,7 +150,7 @@ def number_table(comparison: Comparison) -> Table:
         scale = displayed(row.units)[0]
         rows.append(
             [
-                labelled(f"{row.quantity} by {row.reference}", None, 1, row.units),
+                with_unit(f"{row.quantity} by {row.reference}", row.units),
                 digits(row.value / scale),
                 digits(row.simulated.value / scale),
                 error_digits(row.simulated.error / scale),
@@ -190,7 +190,7 @@ def _right(split: Split) -> bool:
 def _with_peak(quantity: str, peak: float) -> list[str]:
     """A quantity with its unit, and the peak in it."""
     units = OBSERVABLES[quantity].units
-    return [labelled(quantity, None, 1, units), digits(peak / displayed(units)[0], most=4)]
+    return [with_unit(quantity, units), digits(peak / displayed(units)[0], most=4)]
 
 
 def _beside(comparison: Comparison, quantity: str) -> str:
@@ -203,7 +203,3 @@ def _signed(share: float) -> str:
     if not math.isfinite(share):
         return "-"
     return f"{share:+.2f}" if abs(share) >= _LEAST else "0"
-
-
-def _share(percentage: float) -> str:
-    return digits(percentage, most=3)

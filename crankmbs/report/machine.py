@@ -15,13 +15,12 @@ from crankmbs.mechanics.windows import Phase, first_phases
 from crankmbs.report.rows import cycle_remark
 from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
-from crankmbs.scene.force import PistonForce
 from crankmbs.scene.gas import AnyPressure, Gas, tables_of
 from crankmbs.scene.parts import RunningGear
 from crankmbs.scene.run import SETTLED, Extent
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.speed_rows import repeats
-from crankmbs.scene.tables import CylinderTable, Table
+from crankmbs.scene.tables import CylinderTable
 from crankmbs.scene.torque import Torque
 from crankmbs.scene.units import BAR, RPM
 
@@ -71,7 +70,14 @@ def machine_rows(scene: Scene) -> list[tuple[str, str]]:
         ("motion", _motion(scene)),
         *(("", text) for text in speed_remarks(scene)),
         *((f"torque[{k}]", _load(scene, load)) for k, load in enumerate(scene.torque, start=1)),
-        *((f"force[{k}]", _force(force)) for k, force in enumerate(scene.force, start=1)),
+        *(
+            (
+                f"force[{k}]",
+                f"on {f'piston {each.cylinder}' if each.cylinder else 'each piston'}, "
+                f"{each.introduced}: {each.words}{each.window_words}",
+            )
+            for k, each in enumerate(scene.force, start=1)
+        ),
         ("run", _run(scene)),
     ]
     return [(name, text) for name, text in rows if text]
@@ -248,10 +254,6 @@ def _friction(scene: Scene) -> str:
     return f"{' and '.join(part for part in parts if part) or 'none'}, against each sliding piston"
 
 
-def _force(force: PistonForce) -> str:
-    return f"on {force.acts_on}, {force.introduced}: {force.words}{force.window_words}"
-
-
 def _shells(scene: Scene) -> str:
     bearings, throws = scene.bearings, scene.throws
     if bearings is None:
@@ -308,15 +310,12 @@ def _speed(speed: float | Oscillation | Ramp | SpeedFile) -> str:
             least, most = _rpm(min(table.y)), _rpm(max(table.y))
             over_time = speed.kind == "time_table"
             over = " over time" if over_time else " over the crank angle"
-            again = "" if over_time or not repeats(table) else f", again every {_turned(table)}"
+            turned = f", again every {math.degrees(table.x[-1] - table.x[0]):.6g} deg"
+            again = "" if over_time or not repeats(table) else turned
             rows = f"{len(table.x)} rows of {table.source}, {speed.interpolation}"
             return f"{least} to {most}{over} in {rows}{again}"
         case _:
             return f"{_rpm(speed)}{_sense(speed)}"
-
-
-def _turned(table: Table) -> str:
-    return f"{math.degrees(table.x[-1] - table.x[0]):.6g} deg"
 
 
 def _rpm(speed: float) -> str:

@@ -12,7 +12,7 @@ import numpy as np
 from crankmbs.compare import OBSERVABLES, AtAngle, Comparison, Reading, percent, short_name
 from crankmbs.compare.bodies import bodies_of
 from crankmbs.digits import digits, error_digits
-from crankmbs.display import displayed
+from crankmbs.display import displayed, with_unit
 from crankmbs.measures import Estimate, Measures
 from crankmbs.measures.names import angles_of, names_of, values_of
 from crankmbs.report.rows import Table, labelled, meaningless
@@ -125,7 +125,7 @@ def comparison_frame(comparison: Comparison) -> pd.DataFrame:
         units = OBSERVABLES[row.quantity].units
         scale, size = displayed(units)[0], row.size
         sizes = {"difference": size.largest, "RMS difference": size.rms}
-        lines[labelled(row.quantity, None, 1, units), short_name(row.reference)] = {
+        lines[with_unit(row.quantity, units), short_name(row.reference)] = {
             "run": row.peak / scale,
             **{name: value / scale for name, value in sizes.items()},
             **{f"{name} [%]": percent(value, row.peak) for name, value in sizes.items()},
@@ -133,7 +133,7 @@ def comparison_frame(comparison: Comparison) -> pd.DataFrame:
         }
     for number in comparison.numbers:
         scale = displayed(number.units)[0]
-        lines[labelled(number.quantity, None, 1, number.units), number.reference] = {
+        lines[with_unit(number.quantity, number.units), number.reference] = {
             "run": number.simulated.value / scale,
             "difference": abs(number.error) / scale,
             "difference [%]": abs(number.percent),

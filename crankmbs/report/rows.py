@@ -12,8 +12,8 @@ from collections import Counter
 from typing import NamedTuple
 
 from crankmbs.digits import digits, error_digits
-from crankmbs.display import displayed
-from crankmbs.measures import Estimate, JointForce, Measures
+from crankmbs.display import displayed, with_unit
+from crankmbs.measures import Estimate, Measures
 from crankmbs.measures.names import Named, names_of, signless, values_of
 from crankmbs.measures.peaks import Peak, run_peaks
 from crankmbs.measures.span import TURNS_BACK
@@ -52,7 +52,6 @@ _WHOLE_RUN = [
     "cycle angle [deg]",
     "cycle",
 ]
-_MPA = 1e6  # Pa in N/mm^2
 _NO_TIME = 1e-6  # of the latest peak: the begin of the run
 _SAME = 1e-9  # of a piston speed: no more than rounding
 _IMEP = "imep", "imep_crank_end"
@@ -102,7 +101,7 @@ def _over_cycles(result: Result) -> list[Table]:
             bounds = [float(one[end]) for one, end in zip(pair, ends, strict=True)]
             if least == largest and bounds[1] - bounds[0] <= _CLEARLY * max(map(abs, bounds)):
                 continue
-            name = labelled(f"{words}, cylinder {k}" if len(low) > 1 else words, None, 1, units)
+            name = with_unit(f"{words}, cylinder {k}" if len(low) > 1 else words, units)
             ((lowest, apart), (highest, _)) = (_cells(units, Estimate(x, error)) for x in bounds)
             places = [str(number[end]) for end in ends]
             rows.append([name, lowest, places[0], highest, places[1], apart])
@@ -119,19 +118,16 @@ def measure_tables(measures: Measures) -> list[Table]:
     ['over the last cycle', 'over the last cycle']
     """
     window = f"over the {measures.window.kind}"
+    # over cycles that differ there stands in which each is, before its mean
+    headings = FORCE_HEADINGS[:4] + ["cycle"] * _differ(measures) + FORCE_HEADINGS[4:]
     parts = [
         Table([window, "value, to 6 digits", _ERROR], measure_rows(measures)),
-        Table([window, *_headings(measures)], peak_rows(measures)),
+        Table([window, *headings], peak_rows(measures)),
     ]
     if specific := _specific(measures):
         name = f"specific load {window} [N/mm^2]"
         parts.append(Table([name, "peak", _ERROR, "mean", _ERROR], specific))
     return parts
-
-
-def _headings(measures: Measures) -> list[str]:
-    """Of peaks: over cycles that differ there stands in which each is, before its mean."""
-    return FORCE_HEADINGS[:4] + ["cycle"] * _differ(measures) + FORCE_HEADINGS[4:]
 
 
 def _differ(measures: Measures) -> bool:
@@ -228,7 +224,10 @@ def _rows(
         estimates = estimates[:1] if high - low <= _SAME * high else estimates
     many = len(estimates) > 1
     return [
-        _row(f"{words}, cylinder {number}" if many else words, about.units, estimate)
+        [
+            with_unit(f"{words}, cylinder {number}" if many else words, about.units),
+            *_cells(about.units, estimate),
+        ]
         for number, estimate in enumerate(estimates, start=1)
     ]
 
@@ -241,7 +240,7 @@ def peak_rows(measures: Measures) -> list[list[str]]:
     peaks = Counter(peak.name for peak in measures.peaks)
     rows = [
         [
-            labelled(_words(joint), joint.number, joints[joint.joint], "N"),
+            labelled(signless(joint.joint), joint.number, joints[joint.joint], "N"),
             *_cells("N", joint.peak),
             *_angles(joint.crank_angle, joint.cycle_angle, scene.period),
             *[_cycle(joint.crank_angle, scene)] * differ,
@@ -250,7 +249,7 @@ def peak_rows(measures: Measures) -> list[list[str]]:
         for joint in measures.joints
     ]
     for top in measures.peaks:
-        name = labelled(_words(top), top.number, peaks[top.name], top.units)
+        name = labelled(signless(top.name), top.number, peaks[top.name], top.units)
         angles = _angles(top.crank_angle, top.cycle_angle, scene.period)
         angles += [_cycle(top.crank_angle, scene)] * differ
         rows.append([name, *_cells(top.units, top.value), *angles, "", ""])
@@ -268,7 +267,7 @@ def _of_run(peaks: tuple[Peak, ...], scene: Scene) -> list[list[str]]:
     least = _NO_TIME * max(peak.time for peak in peaks)
     return [
         [
-            labelled(_words(top), top.number, counts[top.name], top.units),
+            labelled(signless(top.name), top.number, counts[top.name], top.units),
             *_cells(top.units, top.value),
             f"{top.time:.6g}" if top.time > least else "0",
             *_angles(top.crank_angle, top.cycle_angle, scene.period),
@@ -295,16 +294,12 @@ def _specific(measures: Measures) -> list[list[str]]:
                 cell
                 for estimate in (joint.specific_peak, joint.specific_mean)
                 if estimate is not None
-                for cell in _both(estimate, _MPA)
+                for cell in _cells("N/m^2", estimate)
             ),
         ]
         for joint in measures.joints
         if joint.area is not None
     ]
-
-
-def _words(load: JointForce | Peak) -> str:
-    return signless(load.joint if isinstance(load, JointForce) else load.name)
 
 
 def labelled(name: str, number: int | None, count: int, units: str) -> str:
@@ -313,20 +308,12 @@ def labelled(name: str, number: int | None, count: int, units: str) -> str:
     >>> labelled("crank pin", 2, 4, "Pa")
     'crank pin 2 [bar]'
     """
-    number_of = f" {number}" if number is not None and count > 1 else ""
-    unit = f" [{displayed(units)[1]}]" if units != "1" else ""
-    return f"{name}{number_of}{unit}"
-
-
-def _row(name: str, units: str, estimate: Estimate) -> list[str]:
-    return [labelled(name, None, 1, units), *_cells(units, estimate)]
+    numbered = number is not None and count > 1
+    return with_unit(f"{name} {number}" if numbered else name, units)
 
 
 def _cells(units: str, estimate: Estimate) -> list[str]:
-    return _both(estimate, displayed(units)[0])
-
-
-def _both(estimate: Estimate, scale: float) -> list[str]:
+    scale = displayed(units)[0]
     value, error = estimate.value / scale, estimate.error / scale
     value = value if abs(value) > error or math.isinf(error) else 0.0
     return [digits(value, error), error_digits(error)]

@@ -13,7 +13,7 @@ from crankmbs.scene.sentences import did_you_mean
 if TYPE_CHECKING:
     from crankmbs.scene.scene import Scene
 
-__all__ = ["changed", "field_at"]
+__all__ = ["changed", "field_at", "value_at"]
 
 _STEP = re.compile(r"__|\.|\[|\]\.|\]__|\]$")
 _BARE = re.compile(r"[A-Za-z_]\w*(?:(?:\.|__)\w+|\[\d+\])*")
@@ -61,9 +61,7 @@ def field_at(scene: Scene, name: str) -> tuple[type[Any], str] | None:
     'length'
     """
     *above, last = _steps(name)
-    part: Any = scene
-    for step in above:
-        part = _entry(part, step) if isinstance(part, tuple) else _attribute(part, step)
+    part = _at(scene, above)
     if isinstance(part, tuple) and _entry(part, last) is not None:
         return None
     known = _fields(part)
@@ -72,8 +70,20 @@ def field_at(scene: Scene, name: str) -> tuple[type[Any], str] | None:
     return type(part), known.get(last, last)
 
 
-def _attribute(part: Any, step: str) -> Any:
-    return getattr(part, _fields(part).get(step, step), None)
+def value_at(scene: Scene, name: str) -> Any:
+    """The value at a place that `field_at` knows.
+
+    >>> value_at(load_scene("propeller"), "rod.length")
+    0.1533333
+    """
+    return _at(scene, _steps(name))
+
+
+def _at(part: Any, steps: Sequence[str]) -> Any:
+    for step in steps:
+        named = _fields(part).get(step, step)
+        part = _entry(part, step) if isinstance(part, tuple) else getattr(part, named, None)
+    return part
 
 
 def _entry(parts: tuple[Any, ...], step: str) -> Any:
@@ -112,7 +122,9 @@ def _rebuilt(old: Any, changes: Sequence[_Change], place: tuple[str, ...]) -> An
         name = known.get(key, key)
         if name not in known.values():
             near = did_you_mean(key, list(known)) or f"; known are {', '.join(known)}"
-            raise InputError(f"{below[0].name}: {_called(old)} has no {shown(key)}{near}")
+            part = type(old).__name__
+            called = "scene" if part == "Scene" else part
+            raise InputError(f"{below[0].name}: a {called} has no {shown(key)}{near}")
         new[name] = _below(getattr(old, name), below, (*place, key))
         names[name] = [change.name for change in below]
     try:
@@ -149,10 +161,6 @@ def _below(old: Any, changes: Sequence[_Change], place: tuple[str, ...]) -> Any:
     part = "__".join(place)
     state = f"is one value, {shown(old)}" if old not in (None, ()) else "is not there"
     raise InputError(f"{first.name}: in this scene {part} {state}; give {part} as a whole")
-
-
-def _called(part: Any) -> str:
-    return "a scene" if type(part).__name__ == "Scene" else f"a {type(part).__name__}"
 
 
 def _in_given_names(text: str, names_of: Mapping[str, list[str]]) -> str:

@@ -9,7 +9,16 @@ from annotated_types import Ge, Gt, Le
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo
 
 from crankmbs.errors import InputError, shown
-from crankmbs.scene.schema import Float, folder_of, from_file, of_file, part, si
+from crankmbs.scene.schema import (
+    Angle,
+    AngularSpeed,
+    Float,
+    folder_of,
+    from_file,
+    of_file,
+    part,
+    si,
+)
 from crankmbs.scene.speed_rows import check_over_angle, from_first_row
 from crankmbs.scene.tables import Header, Table, check_abscissae, headings
 from crankmbs.scene.units import DEGREE, RPM
@@ -21,9 +30,6 @@ __all__ = [
     "SpeedFile",
     "Start",
 ]
-
-Angle = Annotated[Float, si("angle")]
-AngularSpeed = Annotated[Float, si("angular speed")]
 
 
 @part

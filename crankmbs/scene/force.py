@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Annotated, ClassVar, NamedTuple
 
 from annotated_types import Ge
-from pydantic import PlainValidator, SerializeAsAny, Strict
+from pydantic import PlainValidator, SerializeAsAny, StrictInt
 
 from crankmbs.numerics.cycle import Cycle
 from crankmbs.numerics.piecewise import Piecewise
@@ -72,7 +72,7 @@ class PistonForce(Windowed):
     unwritten: ClassVar[dict[str, type[PistonForce]]] = {}
     heading: ClassVar[str] = "force"
     unit: ClassVar[str] = "N"
-    cylinder: Annotated[int, Strict(), Ge(1)] | None = None
+    cylinder: Annotated[StrictInt, Ge(1)] | None = None
 
     @property
     @abstractmethod
@@ -86,11 +86,6 @@ class PistonForce(Windowed):
         varies = law.over_time is not None
         unknown = law.python is not None and law.python.period is None
         return not (varies or self.has_window or unknown)
-
-    @property
-    def acts_on(self) -> str:
-        """On whose piston, in words."""
-        return "each piston" if self.cylinder is None else f"piston {self.cylinder}"
 
 
 AnyForce = Annotated[SerializeAsAny[PistonForce], PlainValidator(one_of_kinds(PistonForce))]

@@ -10,6 +10,7 @@ from annotated_types import Ge
 from crankmbs.errors import InputError
 from crankmbs.numerics.piecewise import Piecewise
 from crankmbs.scene.force import Law, PistonForce
+from crankmbs.scene.parts import Distance
 from crankmbs.scene.schema import Float, from_file, part, si
 from crankmbs.scene.table_loads import OfTable, OverAngle, OverTime
 from crankmbs.scene.tables import CylinderTable, Header, Table, tables_of
@@ -40,7 +41,7 @@ class Spring(PistonForce):
 
     kind: Literal["spring"] = "spring"
     stiffness: Annotated[Float, Ge(0), si("stiffness")]
-    relaxed_at: Annotated[Float, si("length")] = 0.0
+    relaxed_at: Distance = 0.0
 
     @cached_property
     def law(self) -> Law:

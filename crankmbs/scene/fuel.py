@@ -6,17 +6,15 @@ import re
 from typing import Annotated
 
 from annotated_types import Ge, Le, Len
-from pydantic import BeforeValidator, Strict, ValidationInfo
+from pydantic import BeforeValidator, StrictInt, ValidationInfo
 
 from crankmbs.errors import InputError, shown
-from crankmbs.scene.schema import Float, part, si
+from crankmbs.scene.schema import AngularSpeed, Float, Time, part, si
 
 __all__ = ["Fuel", "Governor", "Misfire"]
 
 _CYCLES = re.compile(r"(every +)?([1-9][0-9]{0,8})(?:-([1-9][0-9]{0,8}))?")
 
-AngularSpeed = Annotated[Float, si("angular speed")]
-Time = Annotated[Float, Ge(0), si("time")]
 Share = Annotated[Float, Ge(0), Le(100)]
 
 
@@ -33,7 +31,7 @@ def _cycles(value: object, _: ValidationInfo) -> object:
 class Misfire:
     """cylinder, counted from 1; cycles: those that do not fire, "5", "5-8" or "every 4"."""
 
-    cylinder: Annotated[int, Strict(), Ge(1)]
+    cylinder: Annotated[StrictInt, Ge(1)]
     cycles: Annotated[str, BeforeValidator(_cycles)]
 
     def strikes(self, cycle: int) -> bool:
@@ -99,7 +97,7 @@ class Fuel:
 
     misfire: Annotated[tuple[Misfire, ...], Len(1)] | None = None
     scatter: Annotated[Float, Ge(0), Le(10)] = 0.0
-    seed: Annotated[int, Strict(), Ge(0)] = 1
+    seed: Annotated[StrictInt, Ge(0)] = 1
     governor: Governor | None = None
     after: Time = 0.0
     until: Time | None = None

@@ -12,7 +12,14 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from annotated_types import Ge, Gt, Le
-from pydantic import AfterValidator, BeforeValidator, Strict, ValidationInfo
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    StrictBool,
+    StrictInt,
+    StrictStr,
+    ValidationInfo,
+)
 
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.cycles import mean_cycle
@@ -27,6 +34,8 @@ __all__ = ["CONSTANT", "AnyPressure", "Gas", "Indicator", "Polytrope", "tables_o
 CONSTANT = "a constant"  # the source of its table, where it stands in a list
 
 Pressure = Annotated[Float, Gt(0), si("pressure")]
+CompressionRatio = Annotated[Float, Gt(1), Le(1e4)]
+Exponent = Annotated[Float, Gt(0), Le(10)]
 
 _COLUMNS = Header(
     {"crank_angle_deg": DEGREE},
@@ -54,9 +63,9 @@ class Indicator:
     and filled at the bottom dead centre.
     """
 
-    compression_ratio: Annotated[Float, Gt(1), Le(1e4)]
-    n_compression: Annotated[Float, Gt(0), Le(10)]
-    n_expansion: Annotated[Float, Gt(0), Le(10)]
+    compression_ratio: CompressionRatio
+    n_compression: Exponent
+    n_expansion: Exponent
     intake_pressure: Pressure
     exhaust_pressure: Pressure | None = None
     peak_pressure: Pressure
@@ -135,9 +144,9 @@ class Polytrope:
     true bottom dead centre behind, where the file goes on.
     """
 
-    polytrope: Annotated[Float, Gt(0), Le(10)]
+    polytrope: Exponent
     closes: Annotated[Float, Ge(-math.pi), Le(0), si("angle")]
-    compression_ratio: Annotated[Float, Gt(1), Le(1e4)]
+    compression_ratio: CompressionRatio
 
 
 def _motored(value: Any, info: ValidationInfo) -> Any:
@@ -176,19 +185,19 @@ class Gas:
     decimal sign, how many lines to leave out at the beginning. They are None again once it is read.
     """
 
-    columns: Annotated[str, Strict()] | None = None
-    angle: Annotated[str, Strict()] | None = None
-    separator: Annotated[str, Strict(), AfterValidator(sign_of)] | None = None
+    columns: StrictStr | None = None
+    angle: StrictStr | None = None
+    separator: Annotated[StrictStr, AfterValidator(sign_of)] | None = None
     decimal: Literal[".", ","] | None = None
-    skip: Annotated[int, Strict(), Ge(0)] | None = None
+    skip: Annotated[StrictInt, Ge(0)] | None = None
     stroke: Literal[2, 4] = 4
     pressure: PressureSource | None = None
     indicator: Indicator | None = None
-    absolute: Annotated[bool, Strict()] = True
+    absolute: StrictBool = True
     ambient: Pressure | None = None
     zero: Literal["gas_exchange_tdc", "firing_tdc"] = "gas_exchange_tdc"
     interpolation: Literal["pchip", "linear", "cubic", "step"] = "pchip"
-    aligned: Annotated[bool, Strict()] = False
+    aligned: StrictBool = False
     cycles: Literal["mean", "sequence"] | None = None
     closing: Annotated[Float, Ge(0), si("pressure")] | None = None
     motored: MotoredSource | None = None

@@ -5,11 +5,11 @@ from __future__ import annotations
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
-from annotated_types import Ge, Gt
+from annotated_types import Ge
 
 from crankmbs.numerics.cycle import Cycle
 from crankmbs.numerics.piecewise import Piecewise
-from crankmbs.scene.schema import Float, from_file, part, si
+from crankmbs.scene.schema import AnglePeriod, Float, from_file, part, si
 from crankmbs.scene.table_loads import OfTable, OverAngle, OverTime
 from crankmbs.scene.tables import Header, Table
 from crankmbs.scene.torque import Parts, Torque
@@ -142,7 +142,7 @@ class AngleTable(_Rows, OverAngle, Torque):
     kind: Literal["angle_table"] = "angle_table"
     file: Annotated[Table, from_file(_OVER_ANGLE)]
     interpolation: Literal["linear", "pchip", "cubic"] = "linear"
-    period: Annotated[Float, Gt(0), si("angle")] | None = None
+    period: AnglePeriod | None = None
 
     @cached_property
     def parts(self) -> Parts[Cycle]:

@@ -29,7 +29,7 @@ class HowRead(NamedTuple):
     skip: int | None = None
 
 
-def sign_of(separator: str | None) -> str | None:
+def sign_of(separator: str) -> str:
     r"""The separator's sign, where it was given by its name.
 
     Raises
@@ -39,11 +39,10 @@ def sign_of(separator: str | None) -> str | None:
     >>> sign_of("tab"), sign_of(";")
     ('\t', ';')
     """
-    if separator is None or separator in _SEPARATORS.values():
-        return separator
-    if separator in _SEPARATORS:
-        return _SEPARATORS[separator]
-    raise InputError(f'must be ";", ",", "|" or "tab", "blank"; {shown(separator)} came')
+    sign = _SEPARATORS.get(separator, separator)
+    if sign not in _SEPARATORS.values():
+        raise InputError(f'must be ";", ",", "|" or "tab", "blank"; {shown(separator)} came')
+    return sign
 
 
 def read_measured(path: Path, how: HowRead) -> Table | CylinderTable:
@@ -59,7 +58,7 @@ def read_measured(path: Path, how: HowRead) -> Table | CylinderTable:
     name = str(path)
     source = decode(content_of(path), name)
     sheet = read_sheet(
-        name, source, separator=sign_of(how.separator), decimal=how.decimal, skip=how.skip or 0
+        name, source, separator=how.separator, decimal=how.decimal, skip=how.skip or 0
     )
     headings = headings_of(sheet.above, sheet.values.shape[1])
     angle = next(iter(angle_places(headings, how.angle, f"file {name}")), 0)

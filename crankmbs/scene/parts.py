@@ -11,10 +11,10 @@ from dataclasses import replace
 from typing import Annotated, Any, Literal, NamedTuple
 
 from annotated_types import Ge, Gt, Le, Len
-from pydantic import Discriminator, Strict, Tag
+from pydantic import Discriminator, StrictInt, Tag
 
 from crankmbs.errors import InputError, shown
-from crankmbs.scene.schema import Float, part, si
+from crankmbs.scene.schema import Angle, Float, part, si
 
 __all__ = [
     "LIGHT_CRANK",
@@ -40,7 +40,6 @@ Distance = Annotated[Float, si("length")]
 Mass = Annotated[Float, Ge(0), si("mass")]
 Inertia = Annotated[Float, Ge(0), si("inertia")]
 Area = Annotated[Float, Gt(0), si("area")]
-Angle = Annotated[Float, si("angle")]
 
 
 def _number_or_word(value: object) -> str:
@@ -197,7 +196,7 @@ class Cylinder:
     phase: Angle = 0.0
     bank: Angle = 0.0
     position: Distance | None = None
-    throw: Annotated[int, Strict(), Ge(1)] | None = None
+    throw: Annotated[StrictInt, Ge(1)] | None = None
     radius: Length | None = None
     rod: OwnRod | None = None
     piston: OwnPiston | None = None
@@ -232,7 +231,7 @@ class Layout:
     their numbers.
     """
 
-    firing_order: Annotated[tuple[Annotated[int, Strict()], ...], Len(1)] | None = None
+    firing_order: Annotated[tuple[StrictInt, ...], Len(1)] | None = None
     cylinders: Annotated[tuple[Cylinder, ...], Len(1)] | None = None
     spacing: Length | None = None
 

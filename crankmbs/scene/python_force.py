@@ -5,13 +5,12 @@ from __future__ import annotations
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
-from annotated_types import Gt
 from pydantic import PlainSerializer, PlainValidator
 
 from crankmbs.numerics.function import named
 from crankmbs.scene.force import Law, PistonForce, PythonLaw
 from crankmbs.scene.python_load import KeptName, Numbers, OfFunction, function_of, within_period
-from crankmbs.scene.schema import Float, part, si
+from crankmbs.scene.schema import AnglePeriod, part
 
 __all__ = ["Force"]
 
@@ -44,7 +43,7 @@ class Force(OfFunction, PistonForce):
     kink_times: Numbers = ()
     kink_angles: Numbers = ()
     kink_displacements: Numbers = ()
-    period: Annotated[Float, Gt(0), si("angle")] | None = None
+    period: AnglePeriod | None = None
 
     @cached_property
     def law(self) -> Law:

@@ -7,14 +7,13 @@ from collections.abc import Callable
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
-from annotated_types import Gt
 from pydantic import PlainSerializer, PlainValidator, ValidationInfo
 
 from crankmbs.errors import InputError, shown
 from crankmbs.numerics.cycle import Cycle
 from crankmbs.numerics.function import Function, named
 from crankmbs.scene.angle_rows import is_of_halves
-from crankmbs.scene.schema import SAVED, Float, part, si
+from crankmbs.scene.schema import SAVED, AnglePeriod, Float, part
 from crankmbs.scene.torque import Parts, Torque
 from crankmbs.scene.windowed import Windowed
 
@@ -132,7 +131,7 @@ class Load(OfFunction, Torque):
     kink_times: Numbers = ()
     kink_angles: Numbers = ()
     kink_speeds: Numbers = ()
-    period: Annotated[Float, Gt(0), si("angle")] | None = None
+    period: AnglePeriod | None = None
 
     @cached_property
     def parts(self) -> Parts[Cycle]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Le
-from pydantic import BeforeValidator, Strict, ValidationInfo
+from pydantic import BeforeValidator, StrictStr, ValidationInfo
 
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.schema import Float, dumped, part
@@ -75,4 +75,4 @@ class Run:
     until: Annotated[Extent | Literal["settled"], BeforeValidator(_end)]
     every: Annotated[Extent | None, BeforeValidator(_spacing)] = Extent(value=DEGREE, unit="rad")
     rtol: Annotated[Float, Ge(1e-13), Le(1e-2)] = 1e-8
-    formulation: Annotated[str, Strict()] = "auto"
+    formulation: StrictStr = "auto"

@@ -9,9 +9,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import cached_property
-from typing import Annotated
 
-from pydantic import Strict
+from pydantic import StrictStr
 
 import crankmbs.scene.forces
 import crankmbs.scene.loads
@@ -66,8 +65,8 @@ class Scene:
     start: Start | None = None
     torque: tuple[AnyTorque, ...] = ()
     force: tuple[AnyForce, ...] = ()
-    title: Annotated[str, Strict()] = ""
-    source: Annotated[str, Strict()] = ""
+    title: StrictStr = ""
+    source: StrictStr = ""
 
     def __post_init__(self) -> None:
         check_whole(self)

@@ -17,7 +17,8 @@ from typing import Annotated, Any, TypeVar, dataclass_transform
 
 import numpy as np
 import pydantic
-from pydantic import BeforeValidator, ConfigDict, Strict, ValidationError, ValidationInfo
+from annotated_types import Ge, Gt
+from pydantic import BeforeValidator, ConfigDict, StrictFloat, ValidationError, ValidationInfo
 
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.sentences import sentence
@@ -26,9 +27,13 @@ from crankmbs.scene.units import EXAMPLES, check_size, quantity
 
 __all__ = [
     "SAVED",
+    "Angle",
+    "AnglePeriod",
+    "AngularSpeed",
     "CsvFile",
     "Float",
     "Quantity",
+    "Time",
     "dimension_of",
     "dumped",
     "folder_of",
@@ -47,7 +52,7 @@ _CONFIG = ConfigDict(
 _WITH_UNIT = "one number and one unit,"
 
 SAVED = {"saved": True}  # validation context of a dumped scene: it has its tables in itself
-Float = Annotated[float, Strict()]  # lax mode would take true as 1.0 and "3" as 3.0
+Float = StrictFloat  # lax mode would take true as 1.0 and "3" as 3.0
 
 
 @dataclass_transform(kw_only_default=True, frozen_default=True)
@@ -94,6 +99,12 @@ def si(dimension: str) -> BeforeValidator:
     In a file an angle or an angular speed needs its unit: 90 could mean degrees.
     """
     return BeforeValidator(Quantity(dimension))
+
+
+Angle = Annotated[Float, si("angle")]
+AngularSpeed = Annotated[Float, si("angular speed")]
+Time = Annotated[Float, Ge(0), si("time")]
+AnglePeriod = Annotated[Float, Gt(0), si("angle")]
 
 
 def dimension_of(owner: type[Any], name: str) -> str | None:

@@ -63,7 +63,9 @@ def sentence(
     in_python : by a call; in the words of a call then, else in those of a file
     below : where ``root`` stands
     """
-    problem: Any = min(error.errors(), key=lambda each: _rank(each["type"]))
+    problem: Any = min(
+        error.errors(), key=lambda each: each["type"] not in _UNKNOWN
+    )  # a misspelt key is missing, too
     kind, loc = problem["type"], _keys_and_tags(problem)
     cause = problem.get("ctx", {}).get("error")
     if isinstance(cause, PartError):
@@ -106,11 +108,6 @@ def there_are(word: str, known: Sequence[str], spellings: Mapping[str, str] | No
     near = list(dict.fromkeys(names[spelling] for spelling in close))
     listed = ", ".join(f'"{name}"' for name in dict.fromkeys([*near, *known]))
     return f'; did you mean "{near[0]}"? There are {listed}' if near else f"; there are {listed}"
-
-
-def _rank(kind: str) -> int:
-    """A misspelt key shows up as one unknown and one missing: name the unknown one."""
-    return 0 if kind in _UNKNOWN else 1
 
 
 def _keys_and_tags(problem: Any) -> list[int | str]:

@@ -47,11 +47,6 @@ class Header(NamedTuple):
         """What the first column holds, in words."""
         return self.holds.partition(" [")[0]
 
-    @property
-    def or_both(self) -> str:
-        """What may stand in place of one ordinate, in words."""
-        return f", or {' and '.join(self.ways)}" if self.ways else ""
-
 
 @dataclass(frozen=True)
 class Table:
@@ -185,8 +180,9 @@ def read_table(path: Path, header: Header, *, numbered: bool = False) -> Table |
     names = rows[0][1]
     first = next(({name: header.x[name]} for name in header.x if name in names), header.x)
     columns = [_column(path, names, first, "", header.way_out)]
+    instead = f", or {' and '.join(header.ways)}" if header.ways else ""
     several = [] if set(header.y) & set(names) else _several(path, names, header, numbered)
-    columns += several or [_column(path, names, header.y, header.or_both, header.way_out)]
+    columns += several or [_column(path, names, header.y, instead, header.way_out)]
     x, *y = _values(path, rows, columns)
     return CylinderTable(x, tuple(y), str(path)) if several else Table(x, y[0], str(path))
 

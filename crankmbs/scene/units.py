@@ -12,7 +12,17 @@ import re
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.unit_table import factor
 
-__all__ = ["BAR", "DEGREE", "EXAMPLES", "RPM", "check_size", "extent", "quantity", "unit_of"]
+__all__ = [
+    "BAR",
+    "DEGREE",
+    "EXAMPLES",
+    "RPM",
+    "check_size",
+    "extent",
+    "quantity",
+    "share_of",
+    "unit_of",
+]
 
 BAR = 1e5  # Pa
 DEGREE = math.pi / 180.0  # rad
@@ -21,6 +31,7 @@ RPM = math.pi / 30.0  # rad/s
 _NUMBER_AND_UNIT = re.compile(
     r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)(\s.*|[^\W\d_].*)"
 )
+_SHARE = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(%?)\s*")
 
 _USUAL = {  # the SI unit first
     "acceleration": ("m/s^2", "ft/s^2"),
@@ -116,6 +127,16 @@ def extent(text: str) -> tuple[float, str]:
     if size is None:
         raise InputError(f"{shown(text)} is no angle or time: use cycles, rev, deg, rad or s")
     return number * size, "s"
+
+
+def share_of(text: str) -> float:
+    """A share such as "1 %" or "0.01"; no number of another text.
+
+    >>> share_of("1 %"), share_of("1 N")
+    (0.01, nan)
+    """
+    match = _SHARE.fullmatch(text)
+    return math.nan if match is None else float(match[1]) * (0.01 if match[2] else 1.0)
 
 
 def unit_of(dimension: str) -> str:

@@ -316,7 +316,12 @@ def _check_size(scene: Scene) -> None:
         return
     every, in_time = scene.run.every.resolve(scene.period)
     if in_time == until_time:
-        _check_count(until / every)
+        samples = until / every
+        if samples > _MOST_SAMPLES:
+            raise InputError(
+                f"run.every: {samples:.3g} samples came, more than {_MOST_SAMPLES:.0e}; give a "
+                'wider spacing, or every = "none" to keep the last cycle alone'
+            )
 
 
 def _speed_known(scene: Scene) -> float:
@@ -333,11 +338,3 @@ def _speed_known(scene: Scene) -> float:
             return max(map(abs, rows.y))
         case speed:
             return abs(speed)
-
-
-def _check_count(samples: float) -> None:
-    if samples > _MOST_SAMPLES:
-        raise InputError(
-            f"run.every: {samples:.3g} samples came, more than {_MOST_SAMPLES:.0e}; give a wider "
-            'spacing, or every = "none" to keep the last cycle alone'
-        )

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Annotated, Any, ClassVar, Self, TypeVar
+from typing import Any, ClassVar, Self, TypeVar
 
-from annotated_types import Ge
-from pydantic import Strict, TypeAdapter, ValidationError, ValidationInfo
+from pydantic import StrictStr, TypeAdapter, ValidationError, ValidationInfo
 
 from crankmbs.errors import InputError, shown
-from crankmbs.scene.schema import SAVED, Float, of_file, part, si
+from crankmbs.scene.schema import SAVED, AngularSpeed, Time, of_file, part
 from crankmbs.scene.sentences import PartError, did_you_mean
 from crankmbs.scene.tables import Table
 from crankmbs.scene.units import RPM
@@ -18,9 +17,6 @@ from crankmbs.scene.units import RPM
 __all__ = ["Windowed", "one_of_kinds", "registered"]
 
 T = TypeVar("T", bound="type[Windowed]")
-
-Time = Annotated[Float, Ge(0), si("time")]
-AngularSpeed = Annotated[Float, si("angular speed")]
 
 
 @part
@@ -36,7 +32,7 @@ class Windowed(ABC):
     unwritten: ClassVar[dict[str, type[Any]]] = {}  # no file names them, but a saved result
     heading: ClassVar[str]  # of its table in a file
     kind: str
-    name: Annotated[str, Strict()] = ""
+    name: StrictStr = ""
     after: Time | None = None
     until: Time | None = None
     from_speed: AngularSpeed | None = None

@@ -11,7 +11,7 @@ from itertools import product
 from math import prod
 from pathlib import Path
 
-from crankmbs.errors import InputError, shown
+from crankmbs.errors import InputError, at_place, shown
 from crankmbs.scene.content import content_of
 from crankmbs.scene.scene import Scene
 from crankmbs.sweep.fingerprint import fingerprint
@@ -129,11 +129,9 @@ def _listed(scene: Scene, file: Path) -> Cases:
                 f"header of {len(rows[0])}; every case needs each"
             )
     columns = zip(rows[0], *rows[1:], strict=True)
-    try:
+    with at_place(f"file {file}"):
         knobs = tuple(_column(scene, heading, cells) for heading, *cells in columns)
         return Cases(knobs, grid=False)
-    except InputError as error:
-        raise InputError(f"file {file}: {error}") from None
 
 
 def _column(scene: Scene, heading: str, cells: list[str]) -> Knob:

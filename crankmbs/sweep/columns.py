@@ -13,7 +13,7 @@ import numpy as np
 from crankmbs.compare import LECTURES, QUANTITIES, largest_deviations
 from crankmbs.errors import InputError
 from crankmbs.measures import Measures, measure
-from crankmbs.measures.joints import joints_of
+from crankmbs.measures.joints import kinds_of
 from crankmbs.measures.names import angles_of, names_of, values_of
 from crankmbs.mechanics.variables import variables_of
 from crankmbs.numerics.arrays import Array
@@ -74,10 +74,10 @@ def columns_of(scene: Scene, *, series: bool = False) -> dict[str, Column]:
         )
         for name, column in columns.items()
     }
-    for joint, of in _joints(scene).items():
-        angle = "cycle angle" if of == "cylinder" else "crank angle"
-        words = f"{angle} of the largest {joint.replace('_', ' ')}"
-        columns[f"{joint}_peak_angle"] = Column("rad", words, over(of))
+    for kind in kinds_of(scene):
+        angle = "cycle angle" if kind.of == "cylinder" else "crank angle"
+        words = f"{angle} of the largest {kind.joint}"
+        columns[f"{kind.key}_peak_angle"] = Column("rad", words, over(kind.of))
     columns["energy_closure"] = Column("1", "largest energy residual over peak kinetic energy")
     columns["relative_error"] = Column("1", "relative global error, estimated")
     return columns
@@ -90,11 +90,6 @@ def _labels(scene: Scene) -> dict[str, Sequence[object]]:
         labels["journal"] = range(1, len(scene.throws.rods) + 1)
         labels["pin"] = labels["journal"][:-1]
     return labels | {"lecture": list(LECTURES), "quantity": list(QUANTITIES)}
-
-
-def _joints(scene: Scene) -> dict[str, str]:
-    """The joints of a scene by name, and what each is one of."""
-    return {joint.joint.replace(" ", "_"): joint.of for joint in joints_of(scene)}
 
 
 def row_of(result: Result, samples: int | None = None) -> Row:
@@ -143,10 +138,10 @@ def _measured(measures: Measures) -> Row:
     for name, estimates in values_of(measures).items():
         pairs = np.array(estimates, dtype=np.float64).T
         row[name], row[f"{name}{_ERROR}"] = pairs if names[name].of else pairs[:, 0]
-    for joint, of in _joints(scene).items():
-        peaks = angles[f"{joint}_peak"]
+    for kind in kinds_of(scene):
+        peaks = angles[f"{kind.key}_peak"]
         places = [crank % scene.period if cycle is None else cycle for crank, cycle in peaks]
-        row[f"{joint}_peak_angle"] = np.array(places if of else places[0])
+        row[f"{kind.key}_peak_angle"] = np.array(places if kind.of else places[0])
     return row
 
 

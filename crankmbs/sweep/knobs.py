@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.errors import InputError, shown
+from crankmbs.errors import InputError, at_place, shown
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.function import named
-from crankmbs.scene.change import changed, field_at
+from crankmbs.scene.change import changed, field_at, value_at
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.schema import dimension_of
 from crankmbs.scene.sentences import did_you_mean
@@ -155,7 +155,7 @@ def number_at(scene: Scene, name: str) -> Knob:
     """
     kind = _kind(scene, name)
     derived = {"rod_ratio": scene.crank.radius / scene.rod.length, **TABLE_VALUES}
-    value = derived.get(kind.name) if kind.name in DERIVED else _at(scene, kind.name)
+    value = derived.get(kind.name) if kind.name in DERIVED else value_at(scene, kind.name)
     if kind.whole or isinstance(value, bool) or not isinstance(value, float):
         raise InputError(f"{name}: must be a number that a little can be added to; it is no such")
     return _knob(kind, [value])
@@ -218,10 +218,8 @@ def _spaced(kind: _Kind, match: re.Match[str]) -> Knob:
 def _number(kind: _Kind, number: str, unit: str) -> float:
     """A number in SI units; only those without a dimension, and bare SI numbers, have no unit."""
     if kind.dimension is not None and (unit or kind.dimension in ("angle", "angular speed")):
-        try:
+        with at_place(kind.name):
             return quantity(f"{number} {unit}", kind.dimension)
-        except InputError as error:
-            raise InputError(f"{kind.name}: {error}") from None
     if unit:
         raise InputError(f"{kind.name}: takes numbers without a unit; {shown(unit)} came")
     value = float(number)
@@ -241,13 +239,7 @@ def _value(scene: Scene, kind: _Kind, item: object) -> object:
         return int(number) if kind.whole else number
     if kind.name in DERIVED:
         raise InputError(f"{kind.name}: {shown(item)} is no number; {_GRAMMAR}")
-    return _at(changed(scene, {kind.name: item}), kind.name)
-
-
-def _at(scene: object, name: str) -> object:
-    for step in name.split("."):
-        scene = scene[int(step) - 1] if isinstance(scene, tuple) else getattr(scene, step)
-    return scene
+    return value_at(changed(scene, {kind.name: item}), kind.name)
 
 
 def _knob(kind: _Kind, values: list[object]) -> Knob:

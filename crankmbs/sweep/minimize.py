@@ -96,8 +96,7 @@ def minimize(
     True
     """
     check_scene(scene)
-    drawn = Sample(vary, n=1)  # refuses no ranges
-    knobs = tuple(interval_of(scene, *item) for item in drawn.vary.items())
+    knobs = tuple(interval_of(scene, *item) for item in vary.items())
     if not knobs or any(knob.whole for knob in knobs):
         raise InputError("vary: needs ranges of numbers that are not whole; sweep compares others")
     names = [knob.name for knob in knobs]

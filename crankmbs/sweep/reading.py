@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
@@ -10,7 +11,7 @@ from crankmbs.compare import LECTURES, QUANTITIES, short_name
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.sentences import there_are
-from crankmbs.scene.units import quantity, unit_of
+from crankmbs.scene.units import quantity, share_of, unit_of
 from crankmbs.sweep.columns import Column, columns_of
 
 __all__ = ["Reading", "amount_of", "free_reading_of", "reading_of"]
@@ -23,7 +24,6 @@ _DIMENSIONS = {
     unit_of(name): name
     for name in ("force", "torque", "pressure", "angle", "angular speed", "speed", "power")
 } | {"N/m^2": "pressure", "J": "torque"}
-_SHARE = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(%?)\s*")
 _OF_SPEED = ("fluctuation", "mean_speed", "highest_speed", "lowest_speed")
 _LARGEST = {"peak", "largest", "max"}
 _NO_NAMES = {"over", "time", "the", "of", "and", "cylinder"}
@@ -185,7 +185,7 @@ def amount_of(text: str, reading: Reading) -> float:
     dimension = _DIMENSIONS.get(reading.about.units)
     if dimension is not None:
         return quantity(text, dimension)
-    match = _SHARE.fullmatch(text)
-    if match is None:
+    share = share_of(text)
+    if math.isnan(share):
         raise InputError(f'must be a share, such as "1 %" or 0.01; {shown(text)} came')
-    return float(match[1]) * (0.01 if match[2] else 1.0)
+    return share

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from crankmbs.errors import InputError, shown
+from crankmbs.errors import InputError, at_place, shown
 from crankmbs.measures import Estimate
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene, check_scene
@@ -106,10 +106,8 @@ def asked_of(
             f'{shown(text)} is no condition: write one such as "fluctuation {signs.split()[0]} 1 %"'
         )
     reading = free_reading_of(scene, match[1], names)
-    try:
+    with at_place(match[1]):
         return reading, match[2], amount_of(match[3], reading)
-    except InputError as error:
-        raise InputError(f"{match[1]}: {error}") from None
 
 
 def solve(scene: Scene, vary: dict[str, str], wanted: str) -> Solved:
