@@ -2,13 +2,14 @@
 
 import dataclasses
 import json
+import math
 import shutil
 
 import h5py
 import numpy as np
 import pytest
 
-from crankmbs import OutputError, Result, Run, load_scene, simulate
+from crankmbs import Load, OutputError, Quadratic, Result, Run, load_scene, simulate
 from crankmbs.scene.shipped import models_folder
 
 SCENE = load_scene("yi_diesel_free")  # with tables, loads and several cylinders
@@ -201,3 +202,22 @@ def test_an_infinite_error_is_kept(status, result, tmp_path):
 def test_what_names_no_file_is_refused_in_a_sentence():
     with pytest.raises(OutputError, match="named by its folder or file; 3 came"):
         Result.load(3)
+
+
+@pytest.mark.parametrize("more", [(), (Quadratic(coefficient=1e-4),)], ids=["alone", "with more"])
+def test_peaks_of_a_function_that_jumps_are_those_before_it_was_saved(more, tmp_path):
+    """Of it only the values in the cells are kept, none of them from beyond a jump."""
+    switched = Load(
+        lambda t, theta, omega: 30.0 if theta % math.tau < 1.0 else -10.0,
+        kink_angles=(0.0, 1.0),
+        period=math.tau,
+    )
+    scene = load_scene("coasting").with_(torque=(switched, *more), run__until="2 rev")
+    run = simulate(scene)
+    before, after = (
+        {peak.name: peak.value for peak in one.measures().peaks}
+        for one in (run, Result.load(run.save(tmp_path)))
+    )
+    assert after.keys() == before.keys()
+    for name, (value, _) in before.items():
+        assert after[name].value == pytest.approx(value, rel=1e-11)

@@ -13,8 +13,9 @@ from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.mechanics.windows import Phase
 from crankmbs.motion.cells import Acting, Cells
 from crankmbs.motion.motion import Motion, Passes
-from crankmbs.motion.states import samples_in
+from crankmbs.motion.states import inner_samples
 from crankmbs.numerics.arrays import Array, Labelled
+from crankmbs.numerics.lagrange import ends_and_nodes
 from crankmbs.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -61,9 +62,7 @@ def _rows(motion: Motion) -> dict[str, Array]:
         m, n = cells.time.shape
         outside = cells.outside
         if functions and cells.acting.loads is not None:
-            places = np.tile(cells.places, m)
-            states = samples_in(cells, motion.train, np.repeat(np.arange(m), n), places)
-            outside = states.computed["external_torque"]
+            outside = _outside(cells, motion.train)
         unknown = np.full(m * n, np.nan)
         for name in _OF_NODES[:-1]:
             row: Array | None = getattr(cells, name)
@@ -76,6 +75,15 @@ def _rows(motion: Motion) -> dict[str, Array]:
         columns["phases"].append(np.tile(phases, (m, 1)))
         columns["shares"].append(cells.shares)
     return {name: np.concatenate(parts) for name, parts in columns.items()}
+
+
+def _outside(cells: Cells, train: CrankTrain) -> Array:
+    """The torque from outside at ends and nodes [N m]; at an end, where it may jump, as it comes
+    there in the cell."""
+    values = inner_samples(cells, train).computed["external_torque"].reshape(cells.time.shape)
+    ahead = cells.places - cells.inner()
+    slopes = ends_and_nodes(cells.time.shape[1] - 2).slopes
+    return np.asarray(values + ahead * (values @ slopes.T))
 
 
 def passes_in(data: xr.Dataset, scene: Scene, share: float) -> tuple[Passes, xr.Dataset]:

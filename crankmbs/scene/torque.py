@@ -108,8 +108,9 @@ class Torque(Windowed):
 
     @property
     def is_constant(self) -> bool:
-        """Whether it is the same at every time, angle and speed."""
-        return self.is_steady and all(part is None for part in self.parts[1:])
+        """Whether it is known to be the same at every time, angle and speed."""
+        known = not self.lacks
+        return known and self.is_steady and all(part is None for part in self.parts[1:])
 
     def __call__(self, t: ArrayLike, theta: ArrayLike, omega: ArrayLike) -> Array:
         """Torque [N m] at times [s], crank angles [rad] and speeds [rad/s] of one shape; on a jump
