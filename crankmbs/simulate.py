@@ -23,7 +23,7 @@ from crankmbs.scene.scene import Scene, check_scene
 
 __all__ = ["functions_of", "simulate", "why"]
 
-_MOST_CYCLES = 10_000  # of a run that is followed to its stop
+_MOST_CYCLES = 10_000, 100  # of a run that is followed to its stop, and that calls functions
 _NO_STOP = Ending.FADES, Ending.HUNTS, Ending.SWINGS  # its speed falls, but the crank goes on
 
 
@@ -97,7 +97,8 @@ def _slowing(result: Result, cost_cap: float) -> str:
     begin, end = abs(float(speed[0])), float(speed[-1] * np.sign(speed[0]))
     stop, scene, status = _stop(result), result.scene, 0
     count = 2.0 * math.ceil(begin / (begin - end)) if 0.0 < end < begin else math.inf
-    while stop is None and status == 0 and count < _MOST_CYCLES:
+    most = _MOST_CYCLES[crank_train(scene).has_functions]
+    while stop is None and status == 0 and count < most:
         until, every = (Extent(value=size, unit="cycle") for size in (count, 1.0))
         run = dataclasses.replace(scene.run, until=until, every=every)
         longer, formulation = dataclasses.replace(scene, run=run), result.formulation

@@ -13,6 +13,7 @@ from crankmbs import (
     Crank,
     FormulationError,
     InputError,
+    Load,
     Quadratic,
     Result,
     Run,
@@ -184,6 +185,22 @@ def test_a_weak_brake_is_stated_with_what_it_makes_of_errors() -> None:
     apart = np.abs(found.data.crank_speed.values - exact.data.crank_speed.values).max()
     stated = sum(r.data.crank_speed.attrs["error_estimate"] for r in (found, exact))
     assert apart <= 2.0 * stated
+
+
+def test_a_function_is_not_called_in_thousands_of_cycles_to_say_where_the_crank_stops() -> None:
+    """2,700 revolutions later it turns back, and runs away in the other sense."""
+    calls = [0]
+
+    def pushes(_time: float, angle: float, _speed: float) -> float:
+        calls[0] += 1
+        return 5.0 if angle % math.tau < 1.0 else 0.0
+
+    push = Load(pushes, kink_angles=(0.0, 1.0), period=math.tau)
+    scene = load_scene("coasting").with_(
+        gravity=None, crank__inertia=1.0, start__speed=200.0, torque=(push, Constant(torque=-2.0))
+    )
+    assert "its speed grows without bound" in settled(scene).message
+    assert calls[0] < 2_000_000
 
 
 def test_what_happens_once_is_refused() -> None:
