@@ -13,6 +13,7 @@ from crankmbs.scene.read import load_scene
 from crankmbs.simulate import simulate
 from validation.random_changes import random_changes
 from validation.random_forces import random_forces
+from validation.random_unlike import random_unlike
 
 pytestmark = pytest.mark.slow
 
@@ -74,6 +75,14 @@ def test_a_crank_that_turns_back_is_integrated_from_the_last_decision_on() -> No
 def test_a_stretch_shorter_than_a_step_is_run_no_further_than_its_end() -> None:
     """Two rows of the pressure nearly meet: beyond them their cubic is worth nothing."""
     assert confirm(simulate(random_changes("windows", 22))).holds
+
+
+def test_a_soft_bend_over_the_travel_at_which_no_run_is_cut_is_passed() -> None:
+    """One piston passes a row of its force where the slope changes by half of the force in a
+    radian, on the way from a dead centre to where the force of the other is cut."""
+    found = confirm(simulate(random_unlike(3)))
+    assert found.holds
+    assert found.difference < 1e-5
 
 
 @pytest.mark.parametrize(
