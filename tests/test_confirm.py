@@ -13,6 +13,7 @@ from crankmbs.scene.read import load_scene
 from crankmbs.simulate import simulate
 from validation.random_changes import random_changes
 from validation.random_forces import random_forces
+from validation.random_scenes import random_scene
 from validation.random_unlike import random_unlike
 
 pytestmark = pytest.mark.slow
@@ -75,6 +76,20 @@ def test_a_crank_that_turns_back_is_integrated_from_the_last_decision_on() -> No
 def test_a_stretch_shorter_than_a_step_is_run_no_further_than_its_end() -> None:
     """Two rows of the pressure nearly meet: beyond them their cubic is worth nothing."""
     assert confirm(simulate(random_changes("windows", 22))).holds
+
+
+@pytest.mark.parametrize(("kind", "seed"), [("all", 17), ("pressures", 7), ("functions", 13)])
+def test_two_answers_that_agree_by_chance_are_checked_by_the_one_before(
+    kind: str, seed: int
+) -> None:
+    """From step to step the error of an answer changes its sign, or grows."""
+    found = confirm(simulate(random_changes(kind, seed)))
+    assert max(row.share for row in found.period) <= 1.0
+
+
+def test_a_period_whose_first_step_exudyn_fails_is_begun_again() -> None:
+    """0.7 s after the begin of the run: what is left out of a run counts from its own begin."""
+    assert confirm(simulate(random_scene(31))).holds
 
 
 def test_a_soft_bend_over_the_travel_at_which_no_run_is_cut_is_passed() -> None:

@@ -191,9 +191,10 @@ def run_of(change: Array) -> Path:
 @pytest.mark.parametrize(
     ("shares", "smooth", "clean"),
     [
-        ((1.0, 0.25, 0.0625), True, True),
-        ((1.0, 0.5, 0.25), True, False),
-        ((1.0, 0.25, 0.0625), False, False),
+        ((1.0, 0.25, 0.0625, 0.015625), True, True),
+        ((1.0, 0.5, 0.25, 0.125), True, False),
+        ((1.0, 0.25, 0.0625), True, False),
+        ((1.0, 0.25, 0.0625, 0.015625), False, False),
     ],
 )
 def test_runs_are_extrapolated_where_their_slopes_agree_to_order_two(

@@ -11,10 +11,10 @@ __all__ = ["STEPS_A_SECOND", "STEPS_A_TURN", "sentence"]
 STEPS_A_SECOND = 20_000
 """Steps of one cylinder that a second of a cost cap stands for."""
 
-STEPS_A_TURN = 125
+STEPS_A_TURN = 62.5
 """Of the coarsest run, at the speed at the start; and in all, at least."""
 
-_RUNS = 8  # coarsest runs that the first four are worth: it, it from beside, a half, a quarter
+_RUNS = 16  # coarsest runs that the first five are worth: it, it from beside, 2, 4 and 8 of it
 
 
 def sentence(scene: Scene) -> str:

@@ -153,7 +153,7 @@ class Runs:
         return sum(path.steps for path in self.paths)
 
     def first(self) -> bool:
-        """Three runs, shorter than asked for where the steps do not reach or exudyn fails there;
+        """Four runs, shorter than asked for where the steps do not reach or exudyn fails there;
         False where the crank stays at rest, or a finer run ends otherwise.
 
         Raises
@@ -171,7 +171,8 @@ class Runs:
             )
         share = {Ending.DIVERGED: _UNTOUCHED, Ending.CALLED_OFF: 1.0}.get(path.ending)
         if share is not None:
-            self._limits = self._limits._replace(time=share * reached.time)
+            begin = self.start.time
+            self._limits = self._limits._replace(time=begin + share * (reached.time - begin))
             path = self._run()
         self.paths, there = [path], self.start.theta
         if not self.moves:
@@ -179,11 +180,11 @@ class Runs:
         off = math.copysign(_SHAKEN * (1.0 + abs(there)), reached.theta - there)
         self.shaken = self._run(start=self.start._replace(theta=there + off))
         self.motions = (motion_of(self.model.forces, path),)
-        return self.halve() and self.halve()
+        return self.halve() and self.halve() and self.halve()
 
     def _coarse(self) -> Path:
         """A run at the coarsest step at which exudyn comes as far as at a quarter of it."""
-        most = self._limits.steps // 7
+        most = self._limits.steps // 15
         path = self._run(most)
         for _ in range(_RETRIES):
             if path.ending is not Ending.DIVERGED:
@@ -191,7 +192,8 @@ class Runs:
             before = path, self._stiff, self._step
             self._stiff, self._step = True, 0.25 * self._step
             path = self._run(most)
-            further = _UNTOUCHED * path.end.time > before[0].end.time
+            lasted, longer = (p.end.time - self.start.time for p in (before[0], path))
+            further = _UNTOUCHED * longer > lasted
             if path.ending is Ending.DIVERGED and not further:
                 path, self._stiff, self._step = before
                 break
@@ -220,11 +222,11 @@ class Runs:
     def solved(self) -> tuple[Motion, ...]:
         """The answer, and its checks.
 
-        With f, f', ... the runs, coarse to fine, the answers E are (4 f' - f)/3 where the last
-        three runs differ as errors of h^2 do and loads jump nowhere within a step, and else f'
-        alone. The last answer is checked by the one before, and by a motion that is off by what the
-        one before that was off by, over 16 or, at order 1, over 2: where in its last step a run is
-        cut differs from run to run, and two answers may agree by chance. The last check is off by
+        With f, f', ... the runs, coarse to fine, the answers E are (4 f' - f)/3, which err by h^3,
+        of four runs or more of which the last three differ as errors of h^2 do, and else f' alone.
+        The last answer is checked by the one before, and by a motion that is off by what the one
+        before that was off by, over 8 or, at order 1, over 2: as the error of an answer may change
+        its sign between two steps, two of them may agree by chance. The last check is off by
         what the rounding of all steps grows to, as they do at random. A run that is cut another
         number of times than the finest is compared as it is.
         """
@@ -234,11 +236,10 @@ class Runs:
             return motion_of(forces, fine), motion_of(forces, self.paths[-2])
         places, share = _places(fine), 2.0
         tables = answers = [_table(path, places) for path in alike]
-        if len(alike) > 2 and forces.smooth and _is_clean(*tables[-3:]):
-            answers, share = [(4.0 * f - c) / 3.0 for c, f in pairwise(tables)], 16.0
-        answer, checks = answers[-1], answers[-2:-1]
-        if len(answers) > 2:
-            checks.append(answer + (answers[-3] - answer) / share)
+        if len(alike) > 3 and forces.smooth and _is_clean(*tables[-3:]):
+            answers, share = [(4.0 * f - c) / 3.0 for c, f in pairwise(tables)], 8.0
+        answer, before = answers[-1], answers[-2:-4:-1]
+        checks = [answer + (each - answer) / share**k for k, each in enumerate(before)]
         if self.paths[0] is alike[0] and len(self.shaken.stretches) == len(fine.stretches):
             grown = math.sqrt(fine.steps) * _EPS / _SHAKEN
             rounding = grown * (_table(self.shaken, places) - tables[0])
