@@ -179,8 +179,7 @@ class Runs:
             return False
         off = math.copysign(_SHAKEN * (1.0 + abs(there)), reached.theta - there)
         self.shaken = self._run(start=self.start._replace(theta=there + off))
-        self.motions = (motion_of(self.model.forces, path),)
-        return self.halve() and self.halve() and self.halve()
+        return self.halve(times=3)
 
     def _coarse(self) -> Path:
         """A run at the coarsest step at which exudyn comes as far as at a quarter of it."""
@@ -199,15 +198,18 @@ class Runs:
                 break
         return path
 
-    def halve(self) -> bool:
-        """One more run, at half the step; False where exudyn fails there."""
+    def halve(self, times: int = 1) -> bool:
+        """So many more runs, each at half the step; False where exudyn fails there."""
+        finer = all(self._halved() for _ in range(times))
+        self.motions = self.solved()
+        return finer
+
+    def _halved(self) -> bool:
         self._step *= 0.5
         path = self._run()
-        if path.ending is not self.paths[-1].ending:
-            return False
-        self.paths.append(path)
-        self.motions = self.solved()
-        return True
+        if alike := path.ending is self.paths[-1].ending:
+            self.paths.append(path)
+        return alike
 
     def _run(self, most: int | None = None, start: State | None = None) -> Path:
         limits = self._limits if most is None else self._limits._replace(steps=most)
@@ -226,12 +228,14 @@ class Runs:
         of four runs or more of which the last three differ as errors of h^2 do, and else f' alone.
         The last answer is checked by the one before, and by a motion that is off by what the one
         before that was off by, over 8 or, at order 1, over 2: as the error of an answer may change
-        its sign between two steps, two of them may agree by chance. The last check is off by
-        what the rounding of all steps grows to, as they do at random. A run that is cut another
-        number of times than the finest is compared as it is.
+        its sign between two steps, two of them may agree by chance. Both are off, besides, by what
+        the rounding of all steps grows to, as they do at random. A run that is cut another number
+        of times than the finest is compared as it is.
         """
         forces, fine = self.model.forces, self.paths[-1]
         alike = [path for path in self.paths if len(path.stretches) == len(fine.stretches)]
+        if len(self.paths) == 1:
+            return (motion_of(forces, fine),)
         if self.paths[-2] is not alike[-2:][0]:
             return motion_of(forces, fine), motion_of(forces, self.paths[-2])
         places, share = _places(fine), 2.0
@@ -239,16 +243,17 @@ class Runs:
         if len(alike) > 3 and forces.smooth and _is_clean(*tables[-3:]):
             answers, share = [(4.0 * f - c) / 3.0 for c, f in pairwise(tables)], 8.0
         answer, before = answers[-1], answers[-2:-4:-1]
-        checks = [answer + (each - answer) / share**k for k, each in enumerate(before)]
+        offs = [(each - answer) / share**k for k, each in enumerate(before)]
         if self.paths[0] is alike[0] and len(self.shaken.stretches) == len(fine.stretches):
             grown = math.sqrt(fine.steps) * _EPS / _SHAKEN
             rounding = grown * (_table(self.shaken, places) - tables[0])
-            most = max(_largest(each - answer, answer)[0] for each in checks)
+            most = max(_largest(off, answer)[0] for off in offs)
             self.rounded = bool(_largest(rounding, answer)[0] > most)
-            checks.append(answer + rounding)
+            offs = [off + rounding for off in offs]
         if len(forces.angles) or forces.times:  # what lies beside a jump may lie on either side
-            checks += [2.0 * answer - each for each in checks]
-        pairs = [(fine, answer), *((self.paths[-2], each) for each in checks)]  # with its decisions
+            offs += [-off for off in offs]
+        checks = ((self.paths[-2], answer + off) for off in offs)  # with its decisions
+        pairs = [(fine, answer), *checks]
         return tuple(motion_of(forces, path, each, places) for path, each in pairs)
 
     def _coarsest(self) -> float:
