@@ -87,6 +87,13 @@ def test_two_answers_that_agree_by_chance_are_checked_by_the_one_before(
     assert max(row.share for row in found.period) <= 1.0
 
 
+def test_a_run_is_cut_at_every_jump_of_many() -> None:
+    """116 steps of the pressure in a period: run over, they left 6e-4 of the peak."""
+    found = confirm(simulate(random_changes("windows", 5)))
+    assert found.holds
+    assert found.error < 1e-5
+
+
 def test_a_period_whose_first_step_exudyn_fails_is_begun_again() -> None:
     """0.7 s after the begin of the run: what is left out of a run counts from its own begin."""
     assert confirm(simulate(random_scene(31))).holds

@@ -45,7 +45,7 @@ EVERYWHERE: Range = (-math.inf, math.inf)
 
 _TURN = 2.0 * math.pi
 _JUMP = 1e-4  # of the largest value: less is a bend
-_MOST_CUTS = 60  # over the angle in a period: a table of more steps is run over as it is
+_MOST_CUTS = 60  # over the angle in a period: of more a run is cut at the jumps alone
 _MOST_BENDS = 12  # of a function of time or speed: more are run over
 _SAME = 1e-12  # relative: times nearer than this are one
 _BESIDE = 1e-6  # rad: so far beyond a cut it is clear on which side a piston is
@@ -72,7 +72,6 @@ class Forces:
 
     angles : crank angles [rad] in a period at which a run is cut
     jumps : crank angles in a period at which a force jumps [rad]
-    smooth : whether a run is cut at all of them
     """
 
     def __init__(self, train: CrankTrain) -> None:
@@ -83,8 +82,9 @@ class Forces:
         angles = apart(np.concatenate([crank_angle_knots(train), knots_over_angle(train)]))
         bends = self._bends(angles)
         hard = angles[bends > _BESIDE]  # by all of a force in a radian
-        self.jumps, self.smooth = angles[bends > _JUMP], len(hard) <= _MOST_CUTS
-        self.angles = apart(np.append(hard if self.smooth else [], friction_knots(train)))
+        self.jumps = angles[bends > _JUMP]
+        cuts = hard if len(hard) <= _MOST_CUTS else self.jumps
+        self.angles = apart(np.append(cuts, friction_knots(train)))
 
     def _bends(self, knots: Array) -> Array:
         """By what share of its largest value a force bends at crank angles [rad] within 1e-6."""

@@ -24,7 +24,7 @@ from crankmbs.numerics.arrays import Array
 __all__ = ["Path", "Stretch", "enter", "integrate"]
 
 _SAME = 1e-12  # relative: times nearer than this are one
-_ENTRY = 50  # steps that the begin of a stretch counts as
+_ENTRY = 40  # steps of one cylinder that the begin of a stretch counts as
 _SHORT = 1e-5, 0.02  # of a step: a stretch less long is run in such steps of its own
 _STILL = 1e-9  # rad/s2: of an acceleration that is rounding
 
@@ -73,6 +73,7 @@ def integrate(
     state, stretches = start, list[Stretch]()
     sense, steps, iterations, idle = 0.0, 0, 0, 0
     train = model.forces.train
+    entry = _ENTRY // len(train.scene.cylinders)
     steady = all(load.is_steady for load in train.loads)
     ending = Ending.COMPLETE
     while (
@@ -92,7 +93,7 @@ def integrate(
         least, longest = _SHORT  # far beyond its end a force may be anything
         own = max(lasts, least * step) if lasts < longest * step else step
         rows, ending, cost = model.run((*state[:3], alpha), own, most, bounds, stiff=stiff)
-        steps, iterations = steps + len(rows) + _ENTRY, iterations + cost
+        steps, iterations = steps + len(rows) + entry, iterations + cost
         if ending is Ending.COMPLETE:
             rows, sense = _cut(rows, bounds)
         time, theta, omega = rows[-1, :3].tolist()

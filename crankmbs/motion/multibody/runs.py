@@ -240,7 +240,7 @@ class Runs:
             return motion_of(forces, fine), motion_of(forces, self.paths[-2])
         places, share = _places(fine), 2.0
         tables = answers = [_table(path, places) for path in alike]
-        if len(alike) > 3 and forces.smooth and _is_clean(*tables[-3:]):
+        if len(alike) > 3 and _is_clean(*tables[-3:]):
             answers, share = [(4.0 * f - c) / 3.0 for c, f in pairwise(tables)], 8.0
         answer, before = answers[-1], answers[-2:-4:-1]
         offs = [(each - answer) / share**k for k, each in enumerate(before)]
