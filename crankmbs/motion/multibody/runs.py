@@ -205,16 +205,15 @@ class Runs:
         return finer
 
     def _halved(self) -> bool:
-        self._step *= 0.5
-        path = self._run()
+        path = self._run(halvings=len(self.paths))
         if alike := path.ending is self.paths[-1].ending:
             self.paths.append(path)
         return alike
 
-    def _run(self, most: int | None = None, start: State | None = None) -> Path:
+    def _run(self, most: int | None = None, start: State | None = None, halvings: int = 0) -> Path:
         limits = self._limits if most is None else self._limits._replace(steps=most)
         begin, stiff = start or self.start, self._stiff
-        return integrate(self.model, begin, limits, self._step, stiff=stiff)
+        return integrate(self.model, begin, limits, self._step, halvings, stiff=stiff)
 
     @property
     def affords_another(self) -> bool:
@@ -226,11 +225,11 @@ class Runs:
 
         With f, f', ... the runs, coarse to fine, the answers E are (4 f' - f)/3, which err by h^3,
         of four runs or more of which the last three differ as errors of h^2 do, and else f' alone.
-        The last answer is checked by the one before, and by a motion that is off by what the one
-        before that was off by, over 8 or, at order 1, over 2: as the error of an answer may change
-        its sign between two steps, two of them may agree by chance. Both are off, besides, by what
-        the rounding of all steps grows to, as they do at random. A run that is cut another number
-        of times than the finest is compared as it is.
+        The last answer is checked by the one before, and by motions that are off by what those
+        before that were off by, the next over 8 or, where the order may be 1, two over 2 and 4: as
+        the error of an answer may change its sign between two steps, two of them may agree by
+        chance. All are off, besides, by what the rounding of all steps grows to, as they do at
+        random. A run that is cut another number of times than the finest is compared as it is.
         """
         forces, fine = self.model.forces, self.paths[-1]
         alike = [path for path in self.paths if len(path.stretches) == len(fine.stretches)]
@@ -238,11 +237,11 @@ class Runs:
             return (motion_of(forces, fine),)
         if self.paths[-2] is not alike[-2:][0]:
             return motion_of(forces, fine), motion_of(forces, self.paths[-2])
-        places, share = _places(fine), 2.0
+        places, share, earlier = _places(fine), 2.0, 3
         tables = answers = [_table(path, places) for path in alike]
         if len(alike) > 3 and _is_clean(*tables[-3:]):
-            answers, share = [(4.0 * f - c) / 3.0 for c, f in pairwise(tables)], 8.0
-        answer, before = answers[-1], answers[-2:-4:-1]
+            answers, share, earlier = [(4.0 * f - c) / 3.0 for c, f in pairwise(tables)], 8.0, 2
+        answer, before = answers[-1], answers[-2 : -2 - earlier : -1]
         offs = [(each - answer) / share**k for k, each in enumerate(before)]
         if self.paths[0] is alike[0] and len(self.shaken.stretches) == len(fine.stretches):
             grown = math.sqrt(fine.steps) * _EPS / _SHAKEN
