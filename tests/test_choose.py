@@ -39,14 +39,14 @@ def test_asked_for(formulation):
 @pytest.mark.parametrize(
     ("changes", "cost"),
     [
-        ({"run__until": "10 rev"}, ["exudyn takes 10,000 steps or more, some 0.5 s"]),
-        ({"run__until": "5 ms"}, ["exudyn takes 1,000 steps or more, some 0.05 s"]),
+        ({"run__until": "10 rev"}, ["exudyn takes 11,000 steps or more, some 0.55 s"]),
+        ({"run__until": "5 ms"}, ["exudyn takes 1,100 steps or more, some 0.055 s"]),
     ],
 )
 def test_what_exudyn_takes_is_said_beforehand(changes, cost):
     assert list(choose(FREE.with_(**changes), "multibody").reasons[1:]) == cost
     three = replace(FREE.with_(run__until="10 rev"), layout=Layout(firing_order=(1, 3, 2)))
-    assert choose(three, "multibody").reasons[1].endswith("10,000 steps or more, some 1.5 s")
+    assert choose(three, "multibody").reasons[1].endswith("11,000 steps or more, some 1.6 s")
 
 
 def test_how_far_a_crank_from_rest_turns_is_not_known_beforehand():

@@ -6,10 +6,12 @@ import math
 from collections.abc import Mapping
 from contextlib import closing
 
+from crankmbs.errors import FormulationError
 from crankmbs.mechanics.peaks import peak
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import Phases
 from crankmbs.motion.base import Samples, Solution, State
+from crankmbs.motion.ending import Ending
 from crankmbs.motion.mode import Mode, begun
 from crankmbs.motion.multibody.answer import MOTION, solution, values_at
 from crankmbs.motion.multibody.forces import EVERYWHERE, Limits
@@ -38,7 +40,7 @@ def integrated(
 
     Raises
     ------
-    FormulationError : exudyn cannot take a single step from there
+    FormulationError : exudyn cannot take a single step from there, or does not come to the end
     """
     limits = Limits(float(times[-1]), EVERYWHERE, steps)
 
@@ -48,7 +50,14 @@ def integrated(
     with closing(Model(train)) as model:
         start = State(*state, 0.0, Mode(phases))
         runs = Runs(model, start, limits)
-        return refined(runs, rtol, places, by_angle=False)[:2]
+        values, errors, _ = refined(runs, rtol, places, by_angle=False)
+    if runs.ending is not Ending.COMPLETE:
+        end = runs.paths[-1].end
+        raise FormulationError(
+            f"exudyn comes to {end.time:.6g} s, {math.degrees(end.theta):.6g} degrees, within "
+            f"{steps:,} steps"
+        )
+    return values, errors
 
 
 def consistent(train: CrankTrain, motion: Mapping[str, Array], *, driven: bool) -> dict[str, Array]:

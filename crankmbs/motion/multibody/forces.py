@@ -45,8 +45,8 @@ EVERYWHERE: Range = (-math.inf, math.inf)
 
 _TURN = 2.0 * math.pi
 _JUMP = 1e-4  # of the largest value: less is a bend
-_MOST_CUTS = 60  # over the angle in a period: a table of more steps is run over as it is
-_MOST_BENDS = 12  # of a function of time or travel: more are run over
+_MOST_CUTS = 60  # over the angle in a period: of more a run is cut at the jumps alone
+_MOST_BENDS = 12  # of a function of time or speed: more are run over
 _SAME = 1e-12  # relative: times nearer than this are one
 _BESIDE = 1e-6  # rad: so far beyond a cut it is clear on which side a piston is
 
@@ -72,7 +72,6 @@ class Forces:
 
     angles : crank angles [rad] in a period at which a run is cut
     jumps : crank angles in a period at which a force jumps [rad]
-    smooth : whether a run is cut at all of them
     """
 
     def __init__(self, train: CrankTrain) -> None:
@@ -83,8 +82,9 @@ class Forces:
         angles = apart(np.concatenate([crank_angle_knots(train), knots_over_angle(train)]))
         bends = self._bends(angles)
         hard = angles[bends > _BESIDE]  # by all of a force in a radian
-        self.jumps, self.smooth = angles[bends > _JUMP], len(hard) <= _MOST_CUTS
-        self.angles = apart(np.append(hard if self.smooth else [], friction_knots(train)))
+        self.jumps = angles[bends > _JUMP]
+        cuts = hard if len(hard) <= _MOST_CUTS else self.jumps
+        self.angles = apart(np.append(cuts, friction_knots(train)))
 
     def _bends(self, knots: Array) -> Array:
         """By what share of its largest value a force bends at crank angles [rad] within 1e-6."""
@@ -192,16 +192,18 @@ class Forces:
     def pushes(self, bounds: Bounds, mode: Mode, theta: float, sense: float) -> list[Push]:
         """For each cylinder the force of gas, friction and from outside towards the crank, beyond a
         crank angle [rad] in a sense of rotation."""
-        scene = self.train.scene
-        loop = closed_loops(scene, np.array([theta + _BESIDE * sense]))
-        down, slides = displacements(scene, loop)[:, 0].tolist(), -sense * loop.x_1[:, 0]
+        scene, (low, high) = self.train.scene, bounds.angles
+        inside = np.array([theta + _BESIDE * sense, low + _BESIDE, high - _BESIDE])
+        loop = closed_loops(scene, np.where(np.isfinite(inside), inside, theta))
+        travel, slides = displacements(scene, loop)[:, 1:].tolist(), -sense * loop.x_1[:, 0]
         return [
-            self._push(k, *at, bounds, mode)
-            for k, at in enumerate(zip(down, slides.tolist(), strict=True))
+            self._push(k, (ends[0], ends[1]), sign, bounds, mode)
+            for k, (ends, sign) in enumerate(zip(travel, slides.tolist(), strict=True))
         ]
 
-    def _push(self, k: int, displacement: float, slides: float, bounds: Bounds, mode: Mode) -> Push:
-        """That on the piston of the cylinder k, which is there and slides with this sign."""
+    def _push(self, k: int, travel: Range, slides: float, bounds: Bounds, mode: Mode) -> Push:
+        """That on the piston of the cylinder k, which slides with this sign and at the angles that
+        bound it is displaced so far."""
         rubs, phase = self._friction, float(self._phases[k])
         viscous, whole = rubs.viscous, list[Push]()
         gas = self._gas(k, mode.shares[k] if mode.shares else 0.0).by_number(*bounds.angles)
@@ -211,10 +213,11 @@ class Forces:
                 continue
             law = load.force.law
             way = law.forward if slides > 0.0 else law.back
-            travel = _around(_cuts_of(way), displacement) if way else EVERYWHERE
             over_angle = law.over_angle and _turned(law.over_angle, phase)
-            terms += _terms((law.over_time, over_angle, way), (*bounds[:2], travel))
+            terms += _terms((law.over_time, over_angle), bounds[:2])
             viscous += law.viscous
+            if way is not None:
+                whole.append(_over_travel(way, bounds.angles, travel))
             if law.python is not None:
                 whole.append(_at_cycle_angle(law.python.function, phase))
         if viscous:
@@ -247,6 +250,17 @@ def _turned(cycle: Cycle, phase: float) -> Cycle:
 
 def _at_cycle_angle(function: Push, phase: float) -> Push:
     return lambda time, theta, s, v: function(time, theta + phase, s, v)
+
+
+def _over_travel(way: Piecewise, angles: Range, ends: Range) -> Push:
+    """A force over the displacement, which beyond crank angles goes on by the pieces that hold at
+    these displacements."""
+    low, high = angles
+    below, above = (way.by_number(end, end) for end in ends)
+    inside = way.by_number()
+    return lambda _time, theta, s, _v: (
+        below(s) if theta < low else above(s) if theta > high else inside(s)
+    )
 
 
 def _terms(

@@ -24,8 +24,9 @@ from crankmbs.numerics.arrays import Array
 __all__ = ["Path", "Stretch", "enter", "integrate"]
 
 _SAME = 1e-12  # relative: times nearer than this are one
-_ENTRY = 50  # steps that the begin of a stretch counts as
-_SHORT = 1e-5, 0.02  # of a step: a stretch less long is run in such steps of its own
+_ENTRY = 40  # steps of one cylinder that the begin of a stretch counts as
+_SHORT = 0.02  # of a coarsest step: a stretch less long is run in steps of its own
+_LEAST = 1e-4  # of one: shorter ones are not halved, as positions round
 _STILL = 1e-9  # rad/s2: of an acceleration that is rounding
 
 
@@ -64,15 +65,23 @@ class Path(NamedTuple):
 
 
 def integrate(
-    model: Model, start: State, limits: Limits, step: float, *, stiff: bool = False
+    model: Model,
+    start: State,
+    limits: Limits,
+    coarsest: float,
+    halvings: int = 0,
+    *,
+    stiff: bool = False,
 ) -> Path:
-    """Run from a state with steps of a length [s].
+    """Run from a state with steps of a length [s], halved so often.
 
     stiff : whether exudyn's Newton iteration shall know how the loads change
     """
+    step = coarsest / 2.0**halvings
     state, stretches = start, list[Stretch]()
     sense, steps, iterations, idle = 0.0, 0, 0, 0
     train = model.forces.train
+    entry = _ENTRY // len(train.scene.cylinders)
     steady = all(load.is_steady for load in train.loads)
     ending = Ending.COMPLETE
     while (
@@ -89,10 +98,13 @@ def integrate(
             ending = Ending.UNMOVED
             break
         lasts, most = _lasts(state, bounds), limits.steps - steps
-        least, longest = _SHORT  # far beyond its end a force may be anything
-        own = max(lasts, least * step) if lasts < longest * step else step
+        own = step
+        if lasts < _SHORT * coarsest:  # in all runs alike, or each errs by another multiple of h^2
+            own = max(lasts / 2.0**halvings, min(lasts, _LEAST * coarsest))
         rows, ending, cost = model.run((*state[:3], alpha), own, most, bounds, stiff=stiff)
-        steps, iterations = steps + len(rows) + _ENTRY, iterations + cost
+        steps, iterations = steps + len(rows) + entry, iterations + cost
+        if len(rows) == 0:
+            break
         if ending is Ending.COMPLETE:
             rows, sense = _cut(rows, bounds)
         time, theta, omega = rows[-1, :3].tolist()

@@ -153,7 +153,7 @@ class Runs:
         return sum(path.steps for path in self.paths)
 
     def first(self) -> bool:
-        """Three runs, shorter than asked for where the steps do not reach or exudyn fails there;
+        """Four runs, shorter than asked for where the steps do not reach or exudyn fails there;
         False where the crank stays at rest, or a finer run ends otherwise.
 
         Raises
@@ -171,19 +171,19 @@ class Runs:
             )
         share = {Ending.DIVERGED: _UNTOUCHED, Ending.CALLED_OFF: 1.0}.get(path.ending)
         if share is not None:
-            self._limits = self._limits._replace(time=share * reached.time)
+            begin = self.start.time
+            self._limits = self._limits._replace(time=begin + share * (reached.time - begin))
             path = self._run()
         self.paths, there = [path], self.start.theta
         if not self.moves:
             return False
         off = math.copysign(_SHAKEN * (1.0 + abs(there)), reached.theta - there)
         self.shaken = self._run(start=self.start._replace(theta=there + off))
-        self.motions = (motion_of(self.model.forces, path),)
-        return self.halve() and self.halve()
+        return self.halve(times=3)
 
     def _coarse(self) -> Path:
         """A run at the coarsest step at which exudyn comes as far as at a quarter of it."""
-        most = self._limits.steps // 7
+        most = self._limits.steps // 15
         path = self._run(most)
         for _ in range(_RETRIES):
             if path.ending is not Ending.DIVERGED:
@@ -191,26 +191,29 @@ class Runs:
             before = path, self._stiff, self._step
             self._stiff, self._step = True, 0.25 * self._step
             path = self._run(most)
-            further = _UNTOUCHED * path.end.time > before[0].end.time
+            lasted, longer = (p.end.time - self.start.time for p in (before[0], path))
+            further = _UNTOUCHED * longer > lasted
             if path.ending is Ending.DIVERGED and not further:
                 path, self._stiff, self._step = before
                 break
         return path
 
-    def halve(self) -> bool:
-        """One more run, at half the step; False where exudyn fails there."""
-        self._step *= 0.5
-        path = self._run()
-        if path.ending is not self.paths[-1].ending:
-            return False
-        self.paths.append(path)
+    def halve(self, times: int = 1) -> bool:
+        """So many more runs, each at half the step; False where exudyn fails there."""
+        finer = all(self._halved() for _ in range(times))
         self.motions = self.solved()
-        return True
+        return finer
 
-    def _run(self, most: int | None = None, start: State | None = None) -> Path:
+    def _halved(self) -> bool:
+        path = self._run(halvings=len(self.paths))
+        if alike := path.ending is self.paths[-1].ending:
+            self.paths.append(path)
+        return alike
+
+    def _run(self, most: int | None = None, start: State | None = None, halvings: int = 0) -> Path:
         limits = self._limits if most is None else self._limits._replace(steps=most)
         begin, stiff = start or self.start, self._stiff
-        return integrate(self.model, begin, limits, self._step, stiff=stiff)
+        return integrate(self.model, begin, limits, self._step, halvings, stiff=stiff)
 
     @property
     def affords_another(self) -> bool:
@@ -220,34 +223,36 @@ class Runs:
     def solved(self) -> tuple[Motion, ...]:
         """The answer, and its checks.
 
-        With f, f', ... the runs, coarse to fine, the answers E are (4 f' - f)/3 where the last
-        three runs differ as errors of h^2 do and loads jump nowhere within a step, and else f'
-        alone. The last answer is checked by the one before, and by a motion that is off by what the
-        one before that was off by, over 16 or, at order 1, over 2: where in its last step a run is
-        cut differs from run to run, and two answers may agree by chance. The last check is off by
-        what the rounding of all steps grows to, as they do at random. A run that is cut another
-        number of times than the finest is compared as it is.
+        With f, f', ... the runs, coarse to fine, the answers E are (4 f' - f)/3, which err by h^3,
+        of four runs or more of which the last three differ as errors of h^2 do, and else f' alone.
+        The last answer is checked by the one before, and by motions that are off by what those
+        before that were off by, the next over 8 or, where the order may be 1, two over 2 and 4: as
+        the error of an answer may change its sign between two steps, two of them may agree by
+        chance. All are off, besides, by what the rounding of all steps grows to, as they do at
+        random. A run that is cut another number of times than the finest is compared as it is.
         """
         forces, fine = self.model.forces, self.paths[-1]
         alike = [path for path in self.paths if len(path.stretches) == len(fine.stretches)]
+        if len(self.paths) == 1:
+            return (motion_of(forces, fine),)
         if self.paths[-2] is not alike[-2:][0]:
             return motion_of(forces, fine), motion_of(forces, self.paths[-2])
-        places, share = _places(fine), 2.0
+        places, share, earlier = _places(fine), 2.0, 3
         tables = answers = [_table(path, places) for path in alike]
-        if len(alike) > 2 and forces.smooth and _is_clean(*tables[-3:]):
-            answers, share = [(4.0 * f - c) / 3.0 for c, f in pairwise(tables)], 16.0
-        answer, checks = answers[-1], answers[-2:-1]
-        if len(answers) > 2:
-            checks.append(answer + (answers[-3] - answer) / share)
+        if len(alike) > 3 and _is_clean(*tables[-3:]):
+            answers, share, earlier = [(4.0 * f - c) / 3.0 for c, f in pairwise(tables)], 8.0, 2
+        answer, before = answers[-1], answers[-2 : -2 - earlier : -1]
+        offs = [(each - answer) / share**k for k, each in enumerate(before)]
         if self.paths[0] is alike[0] and len(self.shaken.stretches) == len(fine.stretches):
             grown = math.sqrt(fine.steps) * _EPS / _SHAKEN
             rounding = grown * (_table(self.shaken, places) - tables[0])
-            most = max(_largest(each - answer, answer)[0] for each in checks)
+            most = max(_largest(off, answer)[0] for off in offs)
             self.rounded = bool(_largest(rounding, answer)[0] > most)
-            checks.append(answer + rounding)
+            offs = [off + rounding for off in offs]
         if len(forces.angles) or forces.times:  # what lies beside a jump may lie on either side
-            checks += [2.0 * answer - each for each in checks]
-        pairs = [(fine, answer), *((self.paths[-2], each) for each in checks)]  # with its decisions
+            offs += [-off for off in offs]
+        checks = ((self.paths[-2], answer + off) for off in offs)  # with its decisions
+        pairs = [(fine, answer), *checks]
         return tuple(motion_of(forces, path, each, places) for path, each in pairs)
 
     def _coarsest(self) -> float:
