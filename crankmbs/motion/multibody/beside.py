@@ -52,10 +52,14 @@ def integrated(
         runs = Runs(model, start, limits)
         values, errors, _ = refined(runs, rtol, places, by_angle=False)
     if runs.ending is not Ending.COMPLETE:
-        end = runs.paths[-1].end
+        end, fails = runs.paths[-1].end, runs.ending is Ending.DIVERGED
+        why = (
+            "beyond which its Newton iteration does not converge"
+            if fails
+            else f"in {steps:,} steps"
+        )
         raise FormulationError(
-            f"exudyn comes to {end.time:.6g} s, {math.degrees(end.theta):.6g} degrees, within "
-            f"{steps:,} steps"
+            f"exudyn comes to {end.time:.6g} s, {math.degrees(end.theta):.6g} degrees, {why}"
         )
     return values, errors
 
