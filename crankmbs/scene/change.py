@@ -74,7 +74,7 @@ def value_at(scene: Scene, name: str) -> Any:
     """The value at a place that `field_at` knows.
 
     >>> value_at(load_scene("propeller"), "rod.length")
-    0.1533333
+    0.1533333333
     """
     return _at(scene, _steps(name))
 
