@@ -11,7 +11,6 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import PPoly
 
 from crankmbs.numerics.arrays import Array, Index
 
@@ -117,18 +116,6 @@ class Cycle:
     def _numbers(self) -> tuple[list[float], list[list[float]]]:
         """Where its pieces start above the first knot [rad], and their coefficients."""
         return self._layout[2].tolist(), self.coefficients.T.tolist()
-
-    def integral(self, angle: ArrayLike) -> Array:
-        """Integral over the angle from the first knot to angles [rad] of any shape.
-
-        >>> Cycle(np.array([0.0, 1.0]), np.array([[0.0], [0.0], [2.0], [5.0]])).integral([1.0, 2.5])
-        array([ 6.  , 14.75])
-        """
-        ahead = np.asarray(angle, dtype=np.float64) - self.knots[0]
-        turns = np.floor(ahead / self.period)
-        pieces = PPoly(self.coefficients, self.knots).antiderivative()
-        rest = pieces(self.knots[0] + ahead - turns * self.period)
-        return np.asarray(turns * pieces(self.knots[-1]) + rest)
 
     @cached_property
     def largest(self) -> float:

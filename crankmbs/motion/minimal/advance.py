@@ -253,8 +253,8 @@ class _Walk:
 
     def _radau(self, width: float, begin: State) -> Any:
         """With the derivatives of the slopes; SciPy's differences would be lost in the rounding of
-        what a step adds to. It may err in the speed by as much as in the acceleration, of which the
-        load makes so much more."""
+        what a step adds to. Relative to the largest torque the acceleration may err by the
+        tolerance, and the speed by no more than leads to that through the load."""
         time, y = self._origin
         off = np.array([_OFF, 0.0, 0.0])
         ahead, behind = (self._equation.slopes(time, y + each)[1] for each in (off, -off))
