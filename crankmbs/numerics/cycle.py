@@ -17,7 +17,6 @@ from crankmbs.numerics.arrays import Array, Index
 __all__ = ["NEAR", "Cycle", "Periodic", "common_period", "summed", "tiled"]
 
 NEAR = 1e-9  # rad: an angle this close below a knot counts as on it, or rounding decides the side
-_JUMP = 1e-9  # of the largest value or slope: less is rounding
 
 
 class Periodic(Protocol):
@@ -120,21 +119,8 @@ class Cycle:
     @cached_property
     def largest(self) -> float:
         """The largest value, without its sign, at the knots."""
-        return float(np.max(np.abs([self.coefficients[3], self._ends[0]])))
-
-    @cached_property
-    def order(self) -> int:
-        """1 where it jumps, 2 where it bends, else 3."""
-        value, slope = self.coefficients[3], self.coefficients[2]
-        jumps = np.abs(value - np.roll(self._ends[0], 1)) > _JUMP * np.max(np.abs(value))
-        bends = np.abs(slope - np.roll(self._ends[1], 1)) > _JUMP * np.max(np.abs(slope))
-        return 1 if jumps.any() else 2 if bends.any() else 3
-
-    @cached_property
-    def _ends(self) -> tuple[Array, Array]:
-        """Values and slopes where the pieces end."""
-        (a, b, c, d), x = self.coefficients, np.diff(self.knots)
-        return ((a * x + b) * x + c) * x + d, (3.0 * a * x + 2.0 * b) * x + c
+        ends = self.piece(np.arange(len(self.knots) - 1), np.diff(self.knots))
+        return float(np.max(np.abs([self.coefficients[3], ends])))
 
 
 def summed(cycles: list[Cycle], period: float) -> Cycle | None:
