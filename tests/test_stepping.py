@@ -296,15 +296,16 @@ def test_nothing_grows_with_the_number_of_steps():
     sizes, held_then = [], []
     tracemalloc.start()
     try:
-        for steps in (100, 300):
+        for steps in (100, 300, 300):
             for _ in range(steps):
                 stepper.advance(1e-3, load=-1.0)
             sizes.append(len(pickle.dumps(stepper.save())))
             held_then.append(held())
     finally:
         tracemalloc.stop()
-    assert abs(sizes[1] - sizes[0]) < 64
-    assert abs(held_then[1] - held_then[0]) < 4000  # a float more in each step: 7200
+    assert np.abs(np.diff(sizes)).max() < 64
+    # a float more in each step: 7200, both times; what else is made anew, as caches, comes once
+    assert np.abs(np.diff(held_then)).min() < 4000
 
 
 def held():
